@@ -1,0 +1,134 @@
+#pragma once
+
+#include <string_view>
+
+#include "scree/config/settings.hpp"
+
+namespace scree {
+
+/// What a person needs to know of a key. The range is inclusive; {0, 0} where none applies.
+struct Key {
+  std::string_view table, name, unit;
+  double low, high;
+  std::string_view meaning;
+};
+
+/// Calls visit(Key, value&) for every stage setting of one of the two sets.
+template <class Detect, class Visit>
+void for_each_detect_key(std::string_view table, Detect& detect, Visit&& visit) {
+  const auto key = [&](std::string_view name, auto& value, std::string_view unit, double low,
+                       double high, std::string_view meaning) {
+    visit(Key{table, name, unit, low, high, meaning}, value);
+  };
+  key("max_points", detect.max_points, "points", 1, 1 << 26,
+      "largest cloud; points beyond it are dropped and counted. Sets the memory taken at start");
+  key("max_edge_points", detect.max_edge_points, "points", 1, 1 << 26,
+      "most points steeper than edge_threshold; further ones are dropped and counted");
+  key("max_obstacles", detect.max_obstacles, "obstacles", 1, 65536,
+      "longest obstacle list; further ones are dropped and counted");
+  key("voxel_grid", detect.voxel_grid, "", 0, 0,
+      "thin the cloud to the centroid of each occupied voxel first");
+  key("leaf_size", detect.leaf_size, "m", 0.001, 10,
+      "edge of a voxel: larger is faster and smoother, smaller keeps small obstacles");
+  key("kernel_spacing", detect.kernel_spacing, "m", 0.001, 10,
+      "d of the Sobel operator: distance of the eight positions around a point (paper fig. 3)");
+  key("kernel_radius", detect.kernel_radius, "m", 0.001, 10,
+      "r: reach of the kernel estimate at each position (eq. 4); not equal to kernel_spacing, or "
+      "rounding decides which points lie inside");
+  key("kernel_bandwidth", detect.kernel_bandwidth, "r", 0.05, 100,
+      "standard deviation of the kernel in units of kernel_radius; the paper prints 2 (eq. 3)");
+  key("kernel_neighbours", detect.kernel_neighbours, "points", 1, 1000,
+      "least points at each of the eight positions for a gradient: more means fewer gradients on "
+      "sparse ground, and better ones");
+  key("edge_threshold", detect.edge_threshold, "m/m", 0, 100,
+      "least slope of an edge point: lower finds flatter obstacles and more slopes of the ground");
+  key("suppression", detect.suppression, "", 0, 0,
+      "keep only points that are steepest along their gradient (paper fig. 4)");
+  key("suppression_distance", detect.suppression_distance, "m", 0.001, 10,
+      "distance of the two positions that a point is compared with");
+  key("suppression_radius", detect.suppression_radius, "m", 0.001, 10,
+      "reach of the mean at each of the two positions");
+  key("cluster_method", detect.cluster_method, "", 0, 0,
+      "supervoxel clusters the centres of super-voxels (algorithm 2), euclidean the edge points "
+      "themselves (algorithm 1, the baseline)");
+  key("voxel_size", detect.voxel_size, "m", 0.001, 10, "voxels that super-voxels are made of");
+  key("seed_distance", detect.seed_distance, "m", 0.001, 10,
+      "Rseed: grid of the super-voxels' seeds; the paper's 0.05 needs a far denser cloud");
+  key("reflectivity_weight", detect.reflectivity_weight, "", 0, 1000,
+      "wc of the metric D: how much a change of reflectivity parts super-voxels");
+  key("spatial_weight", detect.spatial_weight, "", 0, 1000, "ws of the metric D: compactness");
+  key("normal_weight", detect.normal_weight, "", 0, 1000,
+      "wn of the metric D: how much a change of direction parts super-voxels");
+  key("min_block_points", detect.min_block_points, "points", 1, 100000,
+      "super-voxels with fewer points are noise and go; the paper has 6");
+  key("cluster_tolerance", detect.cluster_tolerance, "m", 0.001, 10,
+      "centres (or edge points) closer than this belong together: larger merges close obstacles, "
+      "smaller splits rims");
+  key("min_cluster_size", detect.min_cluster_size, "", 1, 100000,
+      "least number of super-voxels (or of edge points, with euclidean) of an obstacle");
+  key("ground_inner", detect.ground_inner, "m", 0, 10,
+      "the ground's height is taken from this far around a cluster's box ...");
+  key("ground_outer", detect.ground_outer, "m", 0.001, 20, "... to this far");
+  key("network", detect.network, "", 0, 0, "file of the trained network's weights");
+  key("min_confidence", detect.min_confidence, "", 0, 1,
+      "least answer of the network for an obstacle: higher means fewer ghosts and more misses");
+}
+
+/// Calls visit(Key, value&) for every configuration key there is: the one table of them.
+template <class AnySettings, class Visit>
+void for_each_key(AnySettings& settings, Visit&& visit) {
+  std::string_view table;
+  const auto key = [&](std::string_view name, auto& value, std::string_view unit, double low,
+                       double high, std::string_view meaning) {
+    visit(Key{table, name, unit, low, high, meaning}, value);
+  };
+
+  table = "lidar";
+  auto& lidar = settings.lidar;
+  key("model", lidar.model, "", 0, 0, "which table of vertical angles the sensor has");
+  key("address", lidar.address, "", 0, 0, "local address to listen on; 0.0.0.0 is every interface");
+  key("port", lidar.port, "", 1, 65535, "UDP port of the data packets");
+  key("position_port", lidar.position_port, "", 1, 65535, "UDP port of the position packets");
+  key("sender", lidar.sender, "", 0, 0,
+      "accept packets from this address only; empty accepts any");
+  key("translation", lidar.translation, "m", -100, 100, "lidar origin in base: x, y, z");
+  key("rpy_deg", lidar.rpy_deg, "deg", -360, 360,
+      "rotation lidar -> base: roll, pitch, yaw, applied as Rz(yaw) Ry(pitch) Rx(roll)");
+  key("min_range", lidar.min_range, "m", 0, 200, "returns closer than this are the robot itself");
+  key("max_range", lidar.max_range, "m", 0.1, 200, "returns beyond this are not used");
+  key("clearance", lidar.clearance, "m", 0.1, 100,
+      "points higher than this above base are passed under (branches, ceilings); grows by a third "
+      "of the distance, for slopes");
+  key("cut_azimuth_deg", lidar.cut_azimuth_deg, "deg", 0, 359.99,
+      "azimuth at which a sweep ends and the next begins");
+
+  table = "imu";
+  auto& imu = settings.imu;
+  key("device", imu.device, "", 0, 0, "serial port of the Xsens MTi");
+  key("baud", imu.baud, "bit/s", 4800, 4000000, "its bit rate");
+  key("rpy_deg", imu.rpy_deg, "deg", -360, 360, "rotation imu -> base: roll, pitch, yaw");
+  key("translation", imu.translation, "m", -100, 100, "imu origin in base: x, y, z");
+
+  table = "encoder";
+  auto& encoder = settings.encoder;
+  key("interface", encoder.interface, "", 0, 0, "SocketCAN interface of the wheel encoder");
+  key("can_id", encoder.can_id, "", 0, 0x1FFFFFFF,
+      "identifier of its frame; above 0x7FF: an extended (29-bit) one");
+  key("start_bit", encoder.start_bit, "", 0, 511,
+      "DBC numbering: for big_endian the most significant bit's position");
+  key("length", encoder.length, "bit", 1, 64, "length of the signal");
+  key("byte_order", encoder.byte_order, "", 0, 0, "of the signal");
+  key("signed", encoder.is_signed, "", 0, 0, "whether the signal is two's complement");
+  key("kind", encoder.kind, "", 0, 0,
+      "counter wraps at its length; speed is metres per second after scaling");
+  key("scale", encoder.scale, "m or m/s", -1e6, 1e6, "metres per count, or m/s per unit");
+
+  for_each_detect_key("detect.cloud", settings.detect_cloud, visit);
+  for_each_detect_key("detect.sweep", settings.detect_sweep, visit);
+
+  table = "lcm";
+  key("url", settings.lcm.url, "", 0, 0,
+      "LCM provider; ttl=0 stays on this computer, ttl=1 reaches the local network");
+}
+
+}  // namespace scree

@@ -1,0 +1,155 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "scree/core/pose.hpp"
+#include "scree/core/result.hpp"
+
+namespace scree {
+
+enum class LidarModel : std::uint8_t { vlp16, puck_lite, puck_hires };
+enum class ByteOrder : std::uint8_t { little_endian, big_endian };
+enum class EncoderKind : std::uint8_t { counter, speed };
+enum class ClusterMethod : std::uint8_t { supervoxel, euclidean };
+
+/// The words for an enum in a configuration file.
+template <class Enum>
+constexpr std::array<std::pair<std::string_view, Enum>, 0> kNames{};
+template <>
+inline constexpr std::array kNames<LidarModel> = {
+    std::pair{std::string_view("vlp16"), LidarModel::vlp16},
+    std::pair{std::string_view("puck_lite"), LidarModel::puck_lite},
+    std::pair{std::string_view("puck_hires"), LidarModel::puck_hires}};
+template <>
+inline constexpr std::array kNames<ByteOrder> = {
+    std::pair{std::string_view("little_endian"), ByteOrder::little_endian},
+    std::pair{std::string_view("big_endian"), ByteOrder::big_endian}};
+template <>
+inline constexpr std::array kNames<EncoderKind> = {
+    std::pair{std::string_view("counter"), EncoderKind::counter},
+    std::pair{std::string_view("speed"), EncoderKind::speed}};
+template <>
+inline constexpr std::array kNames<ClusterMethod> = {
+    std::pair{std::string_view("supervoxel"), ClusterMethod::supervoxel},
+    std::pair{std::string_view("euclidean"), ClusterMethod::euclidean}};
+
+template <class Enum>
+constexpr std::string_view name_of(Enum value) {
+  for (const auto& [name, candidate] : kNames<Enum>) {
+    if (candidate == value) return name;
+  }
+  return "?";
+}
+
+// What each value means, its unit and its range stand in config/keys.hpp, the one table of them.
+
+struct LidarSettings {
+  LidarModel model = LidarModel::vlp16;
+  std::string address = "0.0.0.0";
+  int port = 2368;
+  int position_port = 8308;
+  std::string sender;
+  Eigen::Vector3d translation{0, 0, 0};
+  Eigen::Vector3d rpy_deg{0, 0, 0};
+  double min_range = 0.5;
+  double max_range = 30.0;
+  double clearance = 2.0;
+  double cut_azimuth_deg = 0.0;
+
+  /// `lidar` in `base`.
+  Pose mount() const {
+    return {translation,
+            from_roll_pitch_yaw(radians(rpy_deg.x()), radians(rpy_deg.y()), radians(rpy_deg.z()))};
+  }
+};
+
+struct ImuSettings {
+  std::string device = "/dev/ttyUSB0";
+  int baud = 921600;
+  Eigen::Vector3d rpy_deg{0, 0, 0};
+  Eigen::Vector3d translation{0, 0, 0};
+};
+
+struct EncoderSettings {
+  std::string interface = "can0";
+  std::int64_t can_id = 0x1A0;
+  int start_bit = 0;
+  int length = 32;
+  ByteOrder byte_order = ByteOrder::little_endian;
+  bool is_signed = true;
+  EncoderKind kind = EncoderKind::counter;
+  double scale = 0.000157;
+};
+
+/// The stages of the paper. There is one set for reconstructed clouds and one for single sweeps,
+/// because every length follows the density of the points.
+struct DetectSettings {
+  int max_points = 1 << 20;
+  int max_edge_points = 1 << 18;
+  int max_obstacles = 256;
+
+  bool voxel_grid = true;
+  double leaf_size = 0.0592;
+
+  double kernel_spacing = 0.10;
+  double kernel_radius = 0.11;
+  double kernel_bandwidth = 2.0;
+  int kernel_neighbours = 1;
+  double edge_threshold = 0.35;
+
+  bool suppression = true;
+  double suppression_distance = 0.10;
+  double suppression_radius = 0.11;
+
+  ClusterMethod cluster_method = ClusterMethod::supervoxel;
+  double voxel_size = 0.08;
+  double seed_distance = 0.25;
+  double reflectivity_weight = 0.1;
+  double spatial_weight = 0.4;
+  double normal_weight = 1.0;
+  int min_block_points = 6;
+  double cluster_tolerance = 0.30;
+  int min_cluster_size = 3;
+
+  double ground_inner = 0.15;
+  double ground_outer = 0.60;
+
+  std::string network = "network_cloud.txt";
+  double min_confidence = 0.5;
+
+  static DetectSettings for_cloud() { return {}; }
+  static DetectSettings for_sweep();
+};
+
+struct LcmSettings {
+  std::string url = "udpm://239.255.76.67:7667?ttl=0";
+};
+
+struct Settings {
+  LidarSettings lidar;
+  ImuSettings imu;
+  EncoderSettings encoder;
+  DetectSettings detect_cloud = DetectSettings::for_cloud();
+  DetectSettings detect_sweep = DetectSettings::for_sweep();
+  LcmSettings lcm;
+};
+
+/// Reads a TOML file over the defaults. The error names file, line, key and what is accepted.
+Result<Settings> load_settings(const std::filesystem::path& file);
+/// The same from text; `origin` stands for the file's name in errors.
+Result<Settings> parse_settings(std::string_view toml, const std::string& origin);
+/// Every key with its default, unit, range and meaning, as a complete commented TOML file.
+std::string default_settings_toml();
+
+/// Where a shipped or configured file lies: as given when absolute, else beside the configuration
+/// file, else in <program>/../share/scree.
+Result<std::filesystem::path> find_file(const std::string& name,
+                                        const std::filesystem::path& config_folder);
+
+}  // namespace scree

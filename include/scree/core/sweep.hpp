@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "scree/core/fixed_vector.hpp"
+#include "scree/core/point_cloud.hpp"
+
+namespace scree {
+
+/// One turn of the lidar: its returns in firing order, in the `lidar` frame.
+struct Sweep {
+  std::int64_t end_ns = 0;            ///< host time of the last point
+  PointCloud points;                  ///< `lidar` frame, metres
+  FixedVector<std::int32_t> time_ns;  ///< of each point, relative to end_ns, zero or below
+  std::uint32_t packets = 0;          ///< data packets that gave it points
+  std::uint32_t dropped = 0;          ///< points that did not fit
+
+  Sweep() = default;
+  explicit Sweep(std::size_t capacity) : points(capacity), time_ns(capacity) {}
+
+  void clear() {
+    points.clear();
+    time_ns.clear();
+    end_ns = 0;
+    packets = dropped = 0;
+  }
+};
+
+}  // namespace scree

@@ -1,0 +1,84 @@
+#include "scree/config/settings.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "scree/config/keys.hpp"
+
+namespace scree {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+std::string error_of(std::string_view toml) {
+  const auto settings = parse_settings(toml, "robot.toml");
+  return settings ? "no error" : settings.error().message;
+}
+
+TEST(Settings, EmptyFileGivesDefaults) {
+  const auto settings = parse_settings("", "robot.toml");
+  ASSERT_TRUE(settings) << settings.error().message;
+  EXPECT_EQ(settings->lidar.port, 2368);
+  EXPECT_EQ(settings->encoder.can_id, 0x1A0);
+}
+
+TEST(Settings, ReadsEveryKindOfValue) {
+  const auto settings = parse_settings(
+      "[lidar]\nmodel = \"puck_hires\"\nport = 2369\ntranslation = [0.1, 0, 0.95]\nmax_range = 40\n"
+      "[encoder]\ncan_id = 0x18FF1234\nsigned = false\n[detect.cloud]\nleaf_size = 0.1\n",
+      "robot.toml");
+  ASSERT_TRUE(settings) << settings.error().message;
+  EXPECT_EQ(settings->lidar.model, LidarModel::puck_hires);
+  EXPECT_EQ(settings->lidar.port, 2369);
+  EXPECT_EQ(settings->lidar.translation, Eigen::Vector3d(0.1, 0, 0.95));
+  EXPECT_EQ(settings->lidar.max_range, 40.0);
+  EXPECT_EQ(settings->encoder.can_id, 0x18FF1234);
+  EXPECT_FALSE(settings->encoder.is_signed);
+  EXPECT_EQ(settings->detect_cloud.leaf_size, 0.1);
+}
+
+TEST(Settings, MistakesNameFileLineKeyAndWhatIsAccepted) {
+  EXPECT_THAT(error_of("[lidar]\nport = 70000\n"),
+              AllOf(HasSubstr("robot.toml:2: lidar.port"), HasSubstr("1 to 65535")));
+  EXPECT_THAT(error_of("[lidar]\nport = 1.5\n"), HasSubstr("whole number"));
+  EXPECT_THAT(error_of("[lidar]\nmodel = \"hdl64\"\n"),
+              AllOf(HasSubstr("lidar.model"), HasSubstr("\"puck_lite\"")));
+  EXPECT_THAT(error_of("[lidar]\ntranslation = [1, 2]\n"), HasSubstr("three numbers"));
+  EXPECT_THAT(error_of("[lidar]\n\nprot = 2368\n"),
+              AllOf(HasSubstr("robot.toml:3"), HasSubstr("lidar.prot is not a setting")));
+  EXPECT_THAT(error_of("[radar]\nx = 1\n"), HasSubstr("radar is not a setting"));
+  EXPECT_THAT(error_of("lidar = 3\n"), HasSubstr("lidar is a table"));
+  EXPECT_THAT(error_of("[lidar\n"), HasSubstr("robot.toml:1"));
+  EXPECT_THAT(error_of("[lidar]\nmin_range = 31\n"), HasSubstr("below lidar.max_range"));
+  EXPECT_THAT(error_of("[lidar]\nmax_range = nan\n"), HasSubstr("out of range"));
+  EXPECT_THAT(error_of("[detect.cloud]\nground_inner = 5\n"), HasSubstr("ground_outer"));
+}
+
+TEST(Settings, MissingFileIsOneSentence) {
+  const auto settings = load_settings("/nonexistent/scree.toml");
+  ASSERT_FALSE(settings);
+  EXPECT_THAT(settings.error().message, HasSubstr("/nonexistent/scree.toml"));
+}
+
+TEST(Settings, DefaultFileReadsBackAndIsStable) {
+  const std::string text = default_settings_toml();
+  const auto settings = parse_settings(text, "default");
+  ASSERT_TRUE(settings) << settings.error().message;
+}
+
+TEST(Settings, DefaultsLieInTheirRanges) {
+  const Settings settings;
+  for_each_key(settings, [](const Key& key, const auto& value) {
+    EXPECT_FALSE(key.meaning.empty()) << key.name;
+    if constexpr (std::is_arithmetic_v<std::decay_t<decltype(value)>>) {
+      if (key.low < key.high) {
+        EXPECT_GE(static_cast<double>(value), key.low) << key.table << '.' << key.name;
+        EXPECT_LE(static_cast<double>(value), key.high) << key.table << '.' << key.name;
+      }
+    }
+  });
+}
+
+}  // namespace
+}  // namespace scree
