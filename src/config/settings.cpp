@@ -24,7 +24,9 @@ DetectSettings DetectSettings::for_sweep() {
 
 namespace {
 
-std::string full_name(const Key& key) { return fmt::format("{}.{}", key.table, key.name); }
+std::string full_name(const Key& key) {
+  return fmt::format("{}.{}", key.table, key.name);
+}
 
 /// Reads one value at a time; keeps the first mistake.
 class Reader {
@@ -43,7 +45,8 @@ public:
   /// Names the first key of the file that no setting has.
   void refuse_unknown(const toml::table& table, const std::string& prefix) {
     for (const auto& [key, node] : table) {
-      const std::string name = prefix.empty() ? std::string(key.str()) : prefix + "." + key.str().data();
+      const std::string name =
+          prefix.empty() ? std::string(key.str()) : prefix + "." + key.str().data();
       const auto longer = known_.lower_bound(name + ".");
       const bool is_table = longer != known_.end() && longer->starts_with(name + ".");
       if (is_table && node.is_table()) {
@@ -148,21 +151,28 @@ std::optional<std::string> contradiction(const Settings& settings) {
   return std::nullopt;
 }
 
-std::string toml_value(bool value) { return value ? "true" : "false"; }
-std::string toml_value(int value) { return std::to_string(value); }
-std::string toml_value(std::int64_t value) { return fmt::format("0x{:X}", value); }
+std::string toml_value(bool value) {
+  return value ? "true" : "false";
+}
+std::string toml_value(int value) {
+  return std::to_string(value);
+}
+std::string toml_value(std::int64_t value) {
+  return fmt::format("0x{:X}", value);
+}
 std::string toml_value(double value) {
   const std::string text = fmt::format("{}", value);
   return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
 }
-std::string toml_value(const std::string& value) { return "\"" + value + "\""; }
+std::string toml_value(const std::string& value) {
+  return "\"" + value + "\"";
+}
 std::string toml_value(const Eigen::Vector3d& value) {
   return fmt::format("[{}, {}, {}]", toml_value(value.x()), toml_value(value.y()),
                      toml_value(value.z()));
 }
 template <class Enum>
-  requires std::is_enum_v<Enum>
-std::string toml_value(Enum value) {
+requires std::is_enum_v<Enum> std::string toml_value(Enum value) {
   return fmt::format("\"{}\"", name_of(value));
 }
 
@@ -230,8 +240,8 @@ Result<std::filesystem::path> find_file(const std::string& name,
     const fs::path candidate = folder / name;
     if (fs::is_regular_file(candidate, ignored)) return candidate;
   }
-  return fail(fmt::format("cannot find {} beside the configuration file or in {}", name,
-                          shipped.string()));
+  return fail(
+      fmt::format("cannot find {} beside the configuration file or in {}", name, shipped.string()));
 }
 
 }  // namespace scree

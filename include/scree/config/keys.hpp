@@ -89,8 +89,7 @@ void for_each_key(AnySettings& settings, Visit&& visit) {
   key("address", lidar.address, "", 0, 0, "local address to listen on; 0.0.0.0 is every interface");
   key("port", lidar.port, "", 1, 65535, "UDP port of the data packets");
   key("position_port", lidar.position_port, "", 1, 65535, "UDP port of the position packets");
-  key("sender", lidar.sender, "", 0, 0,
-      "accept packets from this address only; empty accepts any");
+  key("sender", lidar.sender, "", 0, 0, "accept packets from this address only; empty accepts any");
   key("translation", lidar.translation, "m", -100, 100, "lidar origin in base: x, y, z");
   key("rpy_deg", lidar.rpy_deg, "deg", -360, 360,
       "rotation lidar -> base: roll, pitch, yaw, applied as Rz(yaw) Ry(pitch) Rx(roll)");

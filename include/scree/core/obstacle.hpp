@@ -21,15 +21,15 @@ struct Obstacle {
   float confidence = 0;                              ///< 0..1
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< of the box, metres
   Eigen::Vector3d extent = Eigen::Vector3d::Zero();  ///< length, width, height of the box, metres
-  double yaw = 0;       ///< of the box's length about z, radians, in (-pi/2, pi/2]
-  double height = 0;    ///< above the surrounding ground; below zero: depth, metres
+  double yaw = 0;     ///< of the box's length about z, radians, in (-pi/2, pi/2]
+  double height = 0;  ///< above the surrounding ground; below zero: depth, metres
   std::uint32_t points = 0;
 };
 
 /// What was found in one cloud, and where the robot was.
 struct ObstacleList {
-  std::int64_t stamp_ns = 0;  ///< of the data, not of publishing
-  Pose pose;                  ///< `base` in `odom` at stamp_ns
+  std::int64_t stamp_ns = 0;        ///< of the data, not of publishing
+  Pose pose;                        ///< `base` in `odom` at stamp_ns
   FixedVector<Obstacle> obstacles;  ///< in `odom`
 
   ObstacleList() = default;

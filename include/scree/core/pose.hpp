@@ -6,8 +6,12 @@
 
 namespace scree {
 
-constexpr double radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
-constexpr double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
+constexpr double radians(double degrees) {
+  return degrees * std::numbers::pi / 180.0;
+}
+constexpr double degrees(double radians) {
+  return radians * 180.0 / std::numbers::pi;
+}
 
 /// A child frame in its parent: p_parent = rotation * p_child + translation (metres).
 struct Pose {

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "scree/detect/edge_points.hpp"
+#include "scree/detect/features.hpp"
+#include "scree/detect/oriented_box.hpp"
+
+namespace scree {
+
+/// Edge points that belong together, and what the network is told of them.
+struct Cluster {
+  std::uint32_t begin = 0, end = 0;  ///< its points in Clusters::members()
+  std::uint32_t size = 0;            ///< super-voxels, or points where there are none
+  OrientedBox box;                   ///< around its points
+  float lowest = 0, highest = 0;     ///< z of its points, metres
+  float ground = 0;                  ///< z of the ground around it, metres
+  Features features{};
+};
+
+/// The clusters of one cloud with their points.
+class Clusters {
+public:
+  explicit Clusters(std::size_t max_points);
+
+  /// Gathers the points of each label that is borne by at least `min_size` units, and their boxes.
+  /// @param labels of each edge point, below `sizes.size()`, or kNoLabel
+  /// @param sizes units (super-voxels or points) of each label
+  void gather(const EdgePoints& edges, std::span<const std::uint32_t> labels,
+              std::span<const std::uint32_t> sizes, std::uint32_t min_size);
+
+  std::span<Cluster> all() { return clusters_; }
+  std::span<const Cluster> all() const { return clusters_; }
+  /// Indices of a cluster's points among the edge points.
+  std::span<const std::uint32_t> members(const Cluster& cluster) const {
+    return std::span<const std::uint32_t>(members_).subspan(cluster.begin,
+                                                            cluster.end - cluster.begin);
+  }
+
+private:
+  FixedVector<Cluster> clusters_;
+  FixedVector<std::uint32_t> members_, place_;
+};
+
+/// F1-F5 of the paper (section 3.2, fig. 8). Heights are above `cluster.ground`. The normal n at a
+/// point is (slope_x, slope_y, -1), into the ground: its horizontal part points uphill, so the
+/// angle to m, the horizontal vector to the axis through the centre of gravity, is acute on a bump
+/// and obtuse in a bowl. A right angle counts for neither.
+Features measure(const EdgePoints& edges, std::span<const std::uint32_t> members, float ground);
+
+}  // namespace scree

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <cstdint>
+
+#include "scree/config/settings.hpp"
+#include "scree/core/obstacle.hpp"
+#include "scree/detect/clusters.hpp"
+#include "scree/detect/edge_points.hpp"
+#include "scree/detect/elevation_gradient.hpp"
+#include "scree/detect/euclidean_clusters.hpp"
+#include "scree/detect/ground_height.hpp"
+#include "scree/detect/network.hpp"
+#include "scree/detect/plane_cells.hpp"
+#include "scree/detect/supervoxels.hpp"
+#include "scree/detect/suppression.hpp"
+#include "scree/detect/voxel_grid.hpp"
+
+namespace scree {
+
+/// Points and obstacles at each stage of one call (the paper's chain is 914,608 -> 413,591 ->
+/// 82,242
+/// -> 26,011), and what did not fit.
+struct StageCounts {
+  std::size_t input = 0;              ///< points given
+  std::size_t dropped = 0;            ///< beyond max_points
+  std::size_t refused = 0;            ///< not finite, or too far out for the cells
+  std::size_t voxels = 0;             ///< after the voxel grid
+  std::size_t known = 0;              ///< with a gradient
+  std::size_t edges = 0;              ///< steeper than the threshold
+  std::size_t edges_dropped = 0;      ///< beyond max_edge_points
+  std::size_t kept = 0;               ///< after suppression
+  std::size_t blocks = 0;             ///< super-voxels
+  std::size_t blocks_kept = 0;        ///< of enough points
+  std::size_t clusters = 0;           ///< of enough super-voxels
+  std::size_t obstacles = 0;          ///< by the network
+  std::size_t obstacles_dropped = 0;  ///< beyond max_obstacles
+};
+
+/// The method of the paper on one point cloud. Memory is taken once, here; detect() allocates
+/// nothing, and gives the same result for the same cloud.
+class Detector {
+public:
+  Detector(const DetectSettings& settings, Network network);
+
+  /// Finds obstacles in a cloud in a gravity-aligned frame (z up) and writes them, numbered from 1,
+  /// in that frame.
+  void detect(PointView cloud, FixedVector<Obstacle>& obstacles);
+
+  const StageCounts& counts() const { return counts_; }
+
+  // What each stage of the last call gave.
+  const PointCloud& thinned() const { return thinned_; }
+  const PlaneCells& cells() const { return cells_; }
+  std::span<const float> slope_x() const { return slope_x_; }
+  std::span<const float> slope_y() const { return slope_y_; }
+  const EdgePoints& edges() const { return edges_; }
+  const EdgePoints& kept() const { return settings_.suppression ? kept_ : edges_; }
+  const Supervoxels& supervoxels() const { return supervoxels_; }
+  const Clusters& clusters() const { return clusters_; }
+
+private:
+  void thin(PointView cloud);
+  void find_edges();
+  void find_clusters();
+  void measure_clusters();
+  void recognise(FixedVector<Obstacle>& obstacles);
+
+  DetectSettings settings_;
+  Network network_;
+  float limit_;  // metres from the origin within which every stage's cells can be told apart
+  StageCounts counts_;
+
+  VoxelGrid voxel_grid_;
+  PointCloud thinned_;
+  ElevationGradient gradient_;
+  PlaneCells cells_;
+  FixedVector<float> slope_x_, slope_y_;  // of the sorted points of cells_
+  FixedVector<std::uint8_t> is_edge_;
+  EdgePoints edges_, kept_;
+  Suppression suppression_;
+  PlaneCells edge_cells_;
+  Supervoxels supervoxels_;
+  EuclideanClusters euclidean_;
+  FixedVector<std::uint32_t> labels_, sizes_;
+  Clusters clusters_;
+  GroundHeight ground_;
+};
+
+}  // namespace scree

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "scree/core/point_cloud.hpp"
+#include "scree/detect/key_sort.hpp"
+
+namespace scree {
+
+/// Euclidean clustering (paper algorithm 1): points closer than a tolerance belong together, and so
+/// does whatever a chain of such points joins.
+class EuclideanClusters {
+public:
+  explicit EuclideanClusters(std::size_t max_points);
+
+  /// Edge of the cells: points that share one are always within the tolerance.
+  static float cell_size(float tolerance) { return tolerance * 0.577F; }
+
+  /// @pre points finite and within reach_of_cells(cell_size(tolerance), max_points, 3), no more
+  /// than max_points of them
+  void cluster(PointView points, float tolerance);
+
+  /// Cluster of each point, numbered from 0 in the order of their first points.
+  std::span<const std::uint32_t> labels() const { return labels_; }
+  std::size_t count() const { return count_; }
+
+private:
+  std::uint32_t root(std::uint32_t cell);
+  void join_cells(PointView points, float square, std::size_t a, std::size_t b);
+
+  KeySort sort_;
+  FixedVector<std::uint64_t> keys_;        // of the occupied cells, ascending
+  FixedVector<std::uint32_t> cell_begin_;  // first sorted point of each, and one past the last
+  FixedVector<std::uint32_t> parent_;      // union-find over the cells
+  FixedVector<std::uint32_t> labels_;
+  FixedVector<std::uint32_t> label_of_root_;
+  std::size_t count_ = 0;
+};
+
+}  // namespace scree

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <span>
+
+#include "scree/core/point_cloud.hpp"
+#include "scree/detect/cell.hpp"
+#include "scree/detect/key_sort.hpp"
+
+namespace scree {
+
+/// Points [begin, end) of a sorted cloud.
+struct Run {
+  std::uint32_t begin, end;
+};
+
+/// Points sorted into square cells of the horizontal plane, row by row. The points of neighbouring
+/// cells of one row then lie side by side, so a neighbourhood is a few runs of memory; walking the
+/// cells in order finds them by cursors that only move forward, without a table of the plane.
+class PlaneCells {
+public:
+  explicit PlaneCells(std::size_t max_points);
+
+  /// Edge of a cell. A hair more than the share of the radius, because quotients are rounded.
+  static float cell_size(float radius) { return radius * 1.0001F / static_cast<float>(kReach); }
+
+  /// Sorts `cloud`, for neighbourhoods of `radius` metres.
+  /// @pre finite points, none beyond reach_of_cells(cell_size(radius), max_points, 2), no more than
+  /// max_points of them
+  void build(PointView cloud, float radius);
+
+  std::size_t size() const { return sort_.size(); }
+  /// The sorted points.
+  const PointCloud& points() const { return points_; }
+  /// Index in the cloud given to build() of a sorted point.
+  std::uint32_t source(std::size_t i) const { return sort_.index(i); }
+
+  /// Calls visit(Run cell, std::span<const Run> neighbourhood) for each occupied cell; every point
+  /// within the radius of build() of a point in the cell lies in the neighbourhood, and others.
+  template <class Visit>
+  void for_each_cell(Visit&& visit) const;
+
+  /// Calls visit(Run) for runs that together hold every point of the rectangle, and others.
+  template <class Visit>
+  void for_each_run(float low_x, float high_x, float low_y, float high_y, Visit&& visit) const;
+
+private:
+  static constexpr int kReach = 3;
+  static constexpr std::size_t kRows = 2 * kReach + 1;
+
+  std::uint64_t key_at(std::uint64_t row, std::uint64_t column) const {
+    return row * columns_ + column;
+  }
+  std::uint32_t first_not_below(std::uint64_t key) const;
+
+  float inverse_ = 1;
+  CellRange column_range_, row_range_;
+  std::uint64_t columns_ = 0;  // of the plane widened by kReach empty cells on every side
+  KeySort sort_;
+  PointCloud points_;
+};
+
+template <class Visit>
+void PlaneCells::for_each_cell(Visit&& visit) const {
+  const auto count = static_cast<std::uint32_t>(size());
+  std::array<Run, kRows> runs{};
+  for (std::uint32_t begin = 0; begin < count;) {
+    const std::uint64_t key = sort_.key(begin);
+    std::uint32_t end = begin;
+    while (end < count && sort_.key(end) == key) ++end;
+    for (std::size_t k = 0; k < kRows; ++k) {
+      const std::uint64_t center = key + k * columns_ - kReach * columns_;
+      Run& run = runs[k];
+      while (run.begin < count && sort_.key(run.begin) < center - kReach) ++run.begin;
+      while (run.end < count && sort_.key(run.end) <= center + kReach) ++run.end;
+    }
+    visit(Run{begin, end}, std::span<const Run>(runs));
+    begin = end;
+  }
+}
+
+template <class Visit>
+void PlaneCells::for_each_run(float low_x, float high_x, float low_y, float high_y,
+                              Visit&& visit) const {
+  if (size() == 0) return;
+  const auto clamped = [this](float value, const CellRange& range) {
+    const auto low = static_cast<float>(range.low), high = static_cast<float>(range.high);
+    const float cell = std::floor(value * inverse_);
+    return range.offset(static_cast<std::int32_t>(cell < low ? low : cell > high ? high : cell));
+  };
+  const std::uint64_t first = clamped(low_x, column_range_) + kReach;
+  const std::uint64_t last = clamped(high_x, column_range_) + kReach;
+  const std::uint64_t last_row = clamped(high_y, row_range_) + kReach;
+  for (std::uint64_t row = clamped(low_y, row_range_) + kReach; row <= last_row; ++row) {
+    const Run run{first_not_below(key_at(row, first)), first_not_below(key_at(row, last) + 1)};
+    if (run.begin < run.end) visit(run);
+  }
+}
+
+}  // namespace scree

@@ -1,0 +1,160 @@
+#include "scree/detect/detector.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scree/detect/cell.hpp"
+
+namespace scree {
+namespace {
+
+std::size_t count(int value) {
+  return static_cast<std::size_t>(value);
+}
+
+/// Metres from the origin that every stage's cells reach.
+float common_reach(const DetectSettings& settings, const ElevationGradient& gradient,
+                   const Suppression& suppression) {
+  const std::size_t points = count(settings.max_points), edges = count(settings.max_edge_points);
+  return std::min(
+      {reach_of_cells(static_cast<float>(settings.leaf_size), points, 3),
+       reach_of_cells(PlaneCells::cell_size(gradient.reach()), points, 2),
+       reach_of_cells(PlaneCells::cell_size(suppression.reach()), edges, 2),
+       reach_of_cells(static_cast<float>(settings.voxel_size), edges, 3),
+       reach_of_cells(static_cast<float>(settings.seed_distance), edges, 3),
+       reach_of_cells(EuclideanClusters::cell_size(static_cast<float>(settings.cluster_tolerance)),
+                      edges, 3)});
+}
+
+}  // namespace
+
+Detector::Detector(const DetectSettings& settings, Network network)
+    : settings_(settings),
+      network_(std::move(network)),
+      limit_(0),
+      voxel_grid_(count(settings.max_points)),
+      thinned_(count(settings.max_points)),
+      gradient_{.spacing = static_cast<float>(settings.kernel_spacing),
+                .radius = static_cast<float>(settings.kernel_radius),
+                .bandwidth = static_cast<float>(settings.kernel_bandwidth * settings.kernel_radius),
+                .min_neighbours = settings.kernel_neighbours},
+      cells_(count(settings.max_points)),
+      slope_x_(count(settings.max_points)),
+      slope_y_(count(settings.max_points)),
+      is_edge_(count(settings.max_points)),
+      edges_(count(settings.max_edge_points)),
+      kept_(count(settings.max_edge_points)),
+      suppression_{.distance = static_cast<float>(settings.suppression_distance),
+                   .radius = static_cast<float>(settings.suppression_radius)},
+      edge_cells_(count(settings.max_edge_points)),
+      supervoxels_(count(settings.max_edge_points)),
+      euclidean_(count(settings.max_edge_points)),
+      labels_(count(settings.max_edge_points)),
+      sizes_(count(settings.max_edge_points)),
+      clusters_(count(settings.max_edge_points)),
+      ground_(static_cast<float>(settings.ground_inner), static_cast<float>(settings.ground_outer),
+              count(settings.max_points)) {
+  limit_ = common_reach(settings_, gradient_, suppression_);
+}
+
+void Detector::detect(PointView cloud, FixedVector<Obstacle>& obstacles) {
+  counts_ = {.input = cloud.size()};
+  thin(cloud);
+  find_edges();
+  if (settings_.suppression) suppression_.suppress(edges_, edge_cells_, kept_);
+  find_clusters();
+  measure_clusters();
+  recognise(obstacles);
+}
+
+void Detector::thin(PointView cloud) {
+  const Intake intake =
+      settings_.voxel_grid
+          ? voxel_grid_.filter(cloud, static_cast<float>(settings_.leaf_size), limit_, thinned_)
+          : copy_finite(cloud, limit_, thinned_);
+  counts_.dropped = intake.dropped;
+  counts_.refused = intake.refused;
+  counts_.voxels = thinned_.size();
+}
+
+void Detector::find_edges() {
+  cells_.build(thinned_, gradient_.reach());
+  slope_x_.resize(cells_.size());
+  slope_y_.resize(cells_.size());
+  is_edge_.resize(cells_.size());
+  gradient_.compute(cells_, slope_x_, slope_y_);
+
+  const auto threshold = static_cast<float>(settings_.edge_threshold);
+  edges_.clear();
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    if (!std::isnan(slope_x_[i])) ++counts_.known;
+    const float square = slope_x_[i] * slope_x_[i] + slope_y_[i] * slope_y_[i];
+    is_edge_[i] = square >= threshold * threshold ? 1 : 0;
+    if (is_edge_[i] == 0) continue;
+    ++counts_.edges;
+    if (!edges_.push_back(cells_.points(), i, slope_x_[i], slope_y_[i])) ++counts_.edges_dropped;
+  }
+}
+
+void Detector::find_clusters() {
+  const EdgePoints& edges = kept();
+  const auto tolerance = static_cast<float>(settings_.cluster_tolerance);
+  counts_.kept = edges.size();
+  labels_.resize(edges.size());
+  if (settings_.cluster_method == ClusterMethod::euclidean) {
+    euclidean_.cluster(edges.points, tolerance);
+    std::ranges::copy(euclidean_.labels(), labels_.begin());
+    sizes_.assign(euclidean_.count(), 0);
+    for (const std::uint32_t label : labels_) ++sizes_[label];
+  } else {
+    supervoxels_.segment(edges,
+                         {.voxel_size = static_cast<float>(settings_.voxel_size),
+                          .seed_distance = static_cast<float>(settings_.seed_distance),
+                          .reflectivity_weight = static_cast<float>(settings_.reflectivity_weight),
+                          .spatial_weight = static_cast<float>(settings_.spatial_weight),
+                          .normal_weight = static_cast<float>(settings_.normal_weight)});
+    counts_.blocks = supervoxels_.blocks();
+    supervoxels_.remove_small(static_cast<std::uint32_t>(settings_.min_block_points));
+    counts_.blocks_kept = supervoxels_.blocks();
+    euclidean_.cluster(supervoxels_.centers(), tolerance);
+    sizes_.assign(euclidean_.count(), 0);
+    for (const std::uint32_t label : euclidean_.labels()) ++sizes_[label];
+    std::ranges::transform(supervoxels_.labels(), labels_.begin(), [&](std::uint32_t block) {
+      return block == kNoLabel ? kNoLabel : euclidean_.labels()[block];
+    });
+  }
+  clusters_.gather(edges, labels_, sizes_, static_cast<std::uint32_t>(settings_.min_cluster_size));
+  counts_.clusters = clusters_.all().size();
+}
+
+void Detector::measure_clusters() {
+  for (Cluster& cluster : clusters_.all()) {
+    const float middle = (cluster.lowest + cluster.highest) / 2;
+    cluster.ground = ground_.around(cluster.box, cells_, is_edge_, middle);
+    cluster.features = measure(kept(), clusters_.members(cluster), cluster.ground);
+  }
+}
+
+void Detector::recognise(FixedVector<Obstacle>& obstacles) {
+  obstacles.clear();
+  for (const Cluster& cluster : clusters_.all()) {
+    const Answer answer = network_(cluster.features);
+    if (answer.confidence() < static_cast<float>(settings_.min_confidence)) continue;
+    ++counts_.obstacles;
+    const bool is_positive = answer.kind() == ObstacleKind::positive;
+    const float low = std::min(cluster.lowest, cluster.ground);
+    const float high = std::max(cluster.highest, cluster.ground);
+    Obstacle obstacle;
+    obstacle.id = static_cast<std::int64_t>(obstacles.size()) + 1;
+    obstacle.kind = answer.kind();
+    obstacle.confidence = answer.confidence();
+    obstacle.center = {cluster.box.center_x, cluster.box.center_y, (low + high) / 2};
+    obstacle.extent = {cluster.box.length, cluster.box.width, high - low};
+    obstacle.yaw = cluster.box.yaw;
+    obstacle.height = cluster.features[is_positive ? max_height : min_height];
+    obstacle.points = cluster.end - cluster.begin;
+    if (!obstacles.push_back(obstacle)) ++counts_.obstacles_dropped;
+  }
+}
+
+}  // namespace scree

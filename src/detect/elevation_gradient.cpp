@@ -1,0 +1,107 @@
+#include "scree/detect/elevation_gradient.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "scree/detect/multiversion.hpp"
+
+namespace scree {
+namespace {
+
+/// One lane for each of the eight positions around a point: the compiler maps them to whatever
+/// vectors the processor has, and the result does not depend on which.
+using Lanes = float __attribute__((vector_size(32)));
+using Masks = std::int32_t __attribute__((vector_size(32)));
+
+constexpr Lanes kOffsetX = {-1, 0, 1, -1, 1, -1, 0, 1};
+constexpr Lanes kOffsetY = {-1, -1, -1, 0, 0, 1, 1, 1};
+/// Sobel weights 1-2-1 (eq. 1); divided by 8 d they give a slope.
+constexpr Lanes kSobelX = {-1, 0, 1, -2, 2, -1, 0, 1};
+constexpr Lanes kSobelY = {-1, -2, -1, 0, 0, 1, 2, 1};
+
+float sum(Lanes lanes) {
+  float total = 0;
+  for (int k = 0; k < 8; ++k) total += lanes[k];
+  return total;
+}
+
+/// exp(-t) as (exp(-t / 2^n))^(2^n): the arguments are small, because only neighbours within the
+/// radius count, so a short polynomial is exact to a float's rounding.
+struct ShortExp {
+  float scale = 1;
+  int squarings = 0;
+
+  explicit ShortExp(float largest) {
+    while (largest * scale > 0.25F && squarings < 24) {
+      scale *= 0.5F;
+      ++squarings;
+    }
+  }
+};
+
+/// What the inner loop needs, so that it reads registers only.
+struct Kernel {
+  Lanes offset_x, offset_y;
+  float square;    // of the radius
+  float exponent;  // of the squared distance
+  int squarings;
+  int min_neighbours;
+};
+
+struct Slope {
+  float x, y;
+};
+
+/// The inner loop: all kernel sums of one point (eq. 4) in one pass over its neighbourhood. The
+/// Sobel sum is left undivided.
+SCREE_MULTIVERSION
+Slope sobel(const Kernel& kernel, const PointCloud& points, std::uint32_t i,
+            std::span<const Run> neighbourhood) {
+  const float x = points.x[i], y = points.y[i], z = points.z[i];
+  const Lanes offset_x = kernel.offset_x, offset_y = kernel.offset_y;
+  Lanes weights{}, elevations{};
+  Masks counts{};
+  for (const Run run : neighbourhood) {
+    for (std::uint32_t j = run.begin; j < run.end; ++j) {
+      const Lanes dx = (points.x[j] - x) - offset_x, dy = (points.y[j] - y) - offset_y;
+      const Lanes distance = dx * dx + dy * dy;
+      const Masks inside = distance <= kernel.square;
+      const Lanes t = distance * kernel.exponent;
+      Lanes k = 1.0F + t * (1.0F + t * (0.5F + t * (1.0F / 6 + t * (1.0F / 24))));
+      for (int n = 0; n < kernel.squarings; ++n) k *= k;
+      k = inside ? k : Lanes{};
+      weights += k;
+      elevations += k * (points.z[j] - z);
+      counts -= inside;
+    }
+  }
+  std::int32_t fewest = counts[0];
+  for (int k = 1; k < 8; ++k) fewest = counts[k] < fewest ? counts[k] : fewest;
+  if (fewest < kernel.min_neighbours) {
+    constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+    return {kUnknown, kUnknown};
+  }
+  const Lanes estimate = elevations / weights;
+  return {sum(kSobelX * estimate), sum(kSobelY * estimate)};
+}
+
+}  // namespace
+
+void ElevationGradient::compute(const PlaneCells& cells, std::span<float> slope_x,
+                                std::span<float> slope_y) const {
+  const float square = radius * radius;
+  const float decay = 1.0F / (2.0F * bandwidth * bandwidth);
+  const ShortExp exp(square * decay);
+  const Kernel kernel{kOffsetX * spacing, kOffsetY * spacing, square,
+                      -decay * exp.scale, exp.squarings,      min_neighbours};
+  const float share = 1.0F / (8.0F * spacing);
+  cells.for_each_cell([&](Run cell, std::span<const Run> neighbourhood) {
+    for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
+      const Slope slope = sobel(kernel, cells.points(), i, neighbourhood);
+      slope_x[i] = slope.x * share;
+      slope_y[i] = slope.y * share;
+    }
+  });
+}
+
+}  // namespace scree

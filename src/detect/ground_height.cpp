@@ -1,0 +1,37 @@
+#include "scree/detect/ground_height.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace scree {
+
+GroundHeight::GroundHeight(float inner, float outer, std::size_t max_points)
+    : inner_(inner), outer_(outer), heights_(max_points) {}
+
+float GroundHeight::around(const OrientedBox& box, const PlaneCells& cells,
+                           std::span<const std::uint8_t> is_edge, float otherwise) {
+  constexpr std::size_t kEnough = 8;
+  const PointCloud& points = cells.points();
+  float outer = outer_;
+  for (int widening = 0; widening < 4; ++widening, outer *= 2) {
+    heights_.clear();
+    const float reach = std::hypot(box.length, box.width) / 2 + outer;
+    cells.for_each_run(box.center_x - reach, box.center_x + reach, box.center_y - reach,
+                       box.center_y + reach, [&](Run run) {
+                         for (std::uint32_t i = run.begin; i < run.end; ++i) {
+                           if (is_edge[i] != 0) continue;
+                           const float distance = box.distance(points.x[i], points.y[i]);
+                           if (distance >= inner_ && distance <= outer) {
+                             heights_.push_back(points.z[i]);
+                           }
+                         }
+                       });
+    if (heights_.size() < kEnough) continue;
+    float* middle = heights_.begin() + heights_.size() / 2;
+    std::nth_element(heights_.begin(), middle, heights_.end());
+    return *middle;
+  }
+  return otherwise;
+}
+
+}  // namespace scree

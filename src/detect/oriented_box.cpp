@@ -1,0 +1,47 @@
+#include "scree/detect/oriented_box.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace scree {
+
+float OrientedBox::distance(float x, float y) const {
+  const float dx = x - center_x, dy = y - center_y;
+  const float along = std::abs(dx * std::cos(yaw) + dy * std::sin(yaw)) - length / 2;
+  const float across = std::abs(dy * std::cos(yaw) - dx * std::sin(yaw)) - width / 2;
+  return std::hypot(std::max(along, 0.0F), std::max(across, 0.0F));
+}
+
+OrientedBox smallest_box(PointView points, std::span<const std::uint32_t> indices) {
+  constexpr float kPi = std::numbers::pi_v<float>;
+  const float origin_x = points.x[indices[0]], origin_y = points.y[indices[0]];
+  OrientedBox best;
+  float best_area = std::numeric_limits<float>::max();
+  for (int step = 0; step < 90; ++step) {
+    const float angle = static_cast<float>(step) * kPi / 180.0F;
+    const float c = std::cos(angle), s = std::sin(angle);
+    float low_u = 0, high_u = 0, low_v = 0, high_v = 0;
+    for (const std::uint32_t i : indices) {
+      const float x = points.x[i] - origin_x, y = points.y[i] - origin_y;
+      const float u = x * c + y * s, v = y * c - x * s;
+      low_u = std::min(low_u, u);
+      high_u = std::max(high_u, u);
+      low_v = std::min(low_v, v);
+      high_v = std::max(high_v, v);
+    }
+    const float along = high_u - low_u, across = high_v - low_v;
+    if (along * across >= best_area) continue;
+    best_area = along * across;
+    const float u = (low_u + high_u) / 2, v = (low_v + high_v) / 2;
+    best = {origin_x + u * c - v * s, origin_y + u * s + v * c, along, across, angle};
+  }
+  if (best.length < best.width) {
+    std::swap(best.length, best.width);
+    best.yaw -= kPi / 2;
+  }
+  return best;
+}
+
+}  // namespace scree

@@ -1,0 +1,270 @@
+#include "scree/detect/supervoxels.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "scree/detect/cell.hpp"
+
+namespace scree {
+
+Supervoxels::Supervoxels(std::size_t max_points)
+    : sort_(max_points),
+      keys_(max_points),
+      voxels_(max_points),
+      voxel_of_(max_points),
+      neighbours_(max_points * kNeighbours),
+      block_means_(max_points),
+      block_voxels_(max_points),
+      owner_(max_points),
+      next_owner_(max_points),
+      distance_(max_points),
+      new_label_(max_points),
+      centers_(max_points),
+      labels_(max_points),
+      block_points_(max_points) {}
+
+void Supervoxels::Profile::add(const Profile& other) {
+  x += other.x;
+  y += other.y;
+  z += other.z;
+  reflectivity += other.reflectivity;
+  normal_x += other.normal_x;
+  normal_y += other.normal_y;
+  normal_z += other.normal_z;
+}
+
+void Supervoxels::Profile::average(std::uint32_t count) {
+  const float share = 1.0F / static_cast<float>(count);
+  x *= share;
+  y *= share;
+  z *= share;
+  reflectivity *= share;
+  // Never zero: every normal points into the ground.
+  const float norm = std::sqrt(normal_x * normal_x + normal_y * normal_y + normal_z * normal_z);
+  normal_x /= norm;
+  normal_y /= norm;
+  normal_z /= norm;
+}
+
+float Supervoxels::squared_metric(const Profile& a, const Profile& b,
+                                  const SupervoxelSettings& settings) {
+  const float dx = a.x - b.x, dy = a.y - b.y, dz = a.z - b.z;
+  const float dc = a.reflectivity - b.reflectivity;
+  const float dn =
+      1.0F - std::abs(a.normal_x * b.normal_x + a.normal_y * b.normal_y + a.normal_z * b.normal_z);
+  const float seed = settings.seed_distance;
+  return settings.reflectivity_weight * dc * dc +
+         settings.spatial_weight * (dx * dx + dy * dy + dz * dz) / (3.0F * seed * seed) +
+         settings.normal_weight * dn * dn;
+}
+
+void Supervoxels::segment(const EdgePoints& edges, const SupervoxelSettings& settings) {
+  fill_voxels(edges, settings.voxel_size);
+  find_neighbours();
+  place_seeds(settings);
+  grow(settings);
+  label_points(edges);
+}
+
+void Supervoxels::fill_voxels(const EdgePoints& edges, float voxel_size) {
+  const PointCloud& points = edges.points;
+  const float inverse = 1.0F / voxel_size;
+  CellRange columns, rows, layers;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    columns.include(floor_to_cell(points.x[i] * inverse));
+    rows.include(floor_to_cell(points.y[i] * inverse));
+    layers.include(floor_to_cell(points.z[i] * inverse));
+  }
+  columns_ = columns.count() + 2;
+  layers_ = layers.count() + 2;
+  sort_.clear();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::uint64_t column = columns.offset(floor_to_cell(points.x[i] * inverse)) + 1;
+    const std::uint64_t row = rows.offset(floor_to_cell(points.y[i] * inverse)) + 1;
+    const std::uint64_t layer = layers.offset(floor_to_cell(points.z[i] * inverse)) + 1;
+    sort_.push((row * columns_ + column) * layers_ + layer, i);
+  }
+  sort_.sort();
+
+  keys_.clear();
+  voxels_.clear();
+  voxel_of_.resize(points.size());
+  for (std::size_t i = 0; i < sort_.size();) {
+    const std::uint64_t key = sort_.key(i);
+    Profile mean;
+    std::uint32_t count = 0;
+    for (; i < sort_.size() && sort_.key(i) == key; ++i, ++count) {
+      const std::uint32_t point = sort_.index(i);
+      const float slope_x = edges.slope_x[point], slope_y = edges.slope_y[point];
+      const float down = 1.0F / std::sqrt(1.0F + slope_x * slope_x + slope_y * slope_y);
+      mean.add({points.x[point], points.y[point], points.z[point],
+                points.reflectivity[point] / 255.0F, slope_x * down, slope_y * down, -down});
+      voxel_of_[point] = static_cast<std::uint32_t>(voxels_.size());
+    }
+    mean.average(count);
+    keys_.push_back(key);
+    voxels_.push_back(mean);
+  }
+}
+
+// For each of the 26 directions the neighbour's key is the voxel's plus a constant, so one walk
+// over the ascending keys with a second cursor finds them all.
+void Supervoxels::find_neighbours() {
+  neighbours_.assign(voxels_.size() * kNeighbours, kNoLabel);
+  std::size_t slot = 0;
+  for (int direction = 0; direction < 27; ++direction) {
+    if (direction == 13) continue;
+    const std::int64_t row = direction / 9 - 1, column = direction / 3 % 3 - 1,
+                       layer = direction % 3 - 1;
+    const auto offset = static_cast<std::uint64_t>(
+        (row * static_cast<std::int64_t>(columns_) + column) * static_cast<std::int64_t>(layers_) +
+        layer);
+    std::size_t other = 0;
+    for (std::size_t voxel = 0; voxel < keys_.size(); ++voxel) {
+      const std::uint64_t key = keys_[voxel] + offset;
+      while (other < keys_.size() && keys_[other] < key) ++other;
+      if (other < keys_.size() && keys_[other] == key) {
+        neighbours_[voxel * kNeighbours + slot] = static_cast<std::uint32_t>(other);
+      }
+    }
+    ++slot;
+  }
+}
+
+// In each occupied cell of the seed grid the voxel nearest to the cell's centre, unless it stands
+// nearly alone: fewer voxels around it than a twentieth of a plane's (as PCL has it).
+void Supervoxels::place_seeds(const SupervoxelSettings& settings) {
+  const float inverse = 1.0F / settings.seed_distance;
+  CellRange columns, rows, layers;
+  for (const Profile& voxel : voxels_) {
+    columns.include(floor_to_cell(voxel.x * inverse));
+    rows.include(floor_to_cell(voxel.y * inverse));
+    layers.include(floor_to_cell(voxel.z * inverse));
+  }
+  sort_.clear();
+  for (std::size_t i = 0; i < voxels_.size(); ++i) {
+    const std::uint64_t column = columns.offset(floor_to_cell(voxels_[i].x * inverse));
+    const std::uint64_t row = rows.offset(floor_to_cell(voxels_[i].y * inverse));
+    const std::uint64_t layer = layers.offset(floor_to_cell(voxels_[i].z * inverse));
+    sort_.push((row * columns.count() + column) * layers.count() + layer, i);
+  }
+  sort_.sort();
+
+  owner_.assign(voxels_.size(), kNoLabel);
+  distance_.assign(voxels_.size(), std::numeric_limits<float>::max());
+  block_means_.clear();
+  const float reach = settings.seed_distance / 2;
+  const float fill = reach / settings.voxel_size;
+  const float least = 0.05F * 3.14159265F * fill * fill;
+  for (std::size_t begin = 0, end = 0; begin < sort_.size(); begin = end) {
+    while (end < sort_.size() && sort_.key(end) == sort_.key(begin)) ++end;
+    const Profile& any = voxels_[sort_.index(begin)];
+    const auto middle = [&](float value) { return (std::floor(value * inverse) + 0.5F) / inverse; };
+    const float x = middle(any.x), y = middle(any.y), z = middle(any.z);
+    const auto squared_distance = [&](const Profile& voxel, float cx, float cy, float cz) {
+      return (voxel.x - cx) * (voxel.x - cx) + (voxel.y - cy) * (voxel.y - cy) +
+             (voxel.z - cz) * (voxel.z - cz);
+    };
+    std::uint32_t seed = sort_.index(begin);
+    for (std::size_t i = begin + 1; i < end; ++i) {
+      const std::uint32_t voxel = sort_.index(i);
+      if (squared_distance(voxels_[voxel], x, y, z) < squared_distance(voxels_[seed], x, y, z)) {
+        seed = voxel;
+      }
+    }
+    const Profile& center = voxels_[seed];
+    std::size_t around = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const float square = squared_distance(voxels_[sort_.index(i)], center.x, center.y, center.z);
+      if (square <= reach * reach) ++around;
+    }
+    if (static_cast<float>(around) <= least) continue;
+    owner_[seed] = static_cast<std::uint32_t>(block_means_.size());
+    distance_[seed] = 0;
+    block_means_.push_back(center);
+  }
+}
+
+// All blocks grow at once: in every round each looks one voxel further, and takes what is nearer to
+// its mean than to the present owner's. 1.8 Rseed bounds a block, as in PCL.
+void Supervoxels::grow(const SupervoxelSettings& settings) {
+  const int rounds =
+      static_cast<int>(std::min(1.8F * settings.seed_distance / settings.voxel_size, 1000.0F));
+  next_owner_.resize(voxels_.size());
+  for (int round = 1; round < rounds; ++round) {
+    std::copy(owner_.begin(), owner_.end(), next_owner_.begin());
+    for (std::size_t voxel = 0; voxel < voxels_.size(); ++voxel) {
+      const std::uint32_t block = owner_[voxel];
+      if (block == kNoLabel) continue;
+      for (std::size_t slot = 0; slot < kNeighbours; ++slot) {
+        const std::uint32_t neighbour = neighbours_[voxel * kNeighbours + slot];
+        if (neighbour == kNoLabel || next_owner_[neighbour] == block) continue;
+        const float metric = squared_metric(block_means_[block], voxels_[neighbour], settings);
+        if (metric < distance_[neighbour]) {
+          distance_[neighbour] = metric;
+          next_owner_[neighbour] = block;
+        }
+      }
+    }
+    if (std::equal(owner_.begin(), owner_.end(), next_owner_.begin())) break;
+    std::swap(owner_, next_owner_);
+    average_blocks();
+  }
+}
+
+void Supervoxels::average_blocks() {
+  block_voxels_.assign(block_means_.size(), 0);
+  for (std::size_t voxel = 0; voxel < voxels_.size(); ++voxel) {
+    const std::uint32_t block = owner_[voxel];
+    if (block == kNoLabel) continue;
+    if (block_voxels_[block]++ == 0) block_means_[block] = {};
+    block_means_[block].add(voxels_[voxel]);
+  }
+  for (std::size_t block = 0; block < block_means_.size(); ++block) {
+    if (block_voxels_[block] > 0) block_means_[block].average(block_voxels_[block]);
+  }
+}
+
+void Supervoxels::label_points(const EdgePoints& edges) {
+  labels_.resize(edges.size());
+  block_points_.assign(block_means_.size(), 0);
+  centers_.resize(block_means_.size());
+  for (auto* axis : {&centers_.x, &centers_.y, &centers_.z, &centers_.reflectivity}) {
+    std::fill(axis->begin(), axis->end(), 0.0F);
+  }
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const std::uint32_t block = owner_[voxel_of_[i]];
+    labels_[i] = block;
+    if (block == kNoLabel) continue;
+    // Running means stay near the points, where float is exact enough.
+    const float share = 1.0F / static_cast<float>(++block_points_[block]);
+    centers_.x[block] += (edges.points.x[i] - centers_.x[block]) * share;
+    centers_.y[block] += (edges.points.y[i] - centers_.y[block]) * share;
+    centers_.z[block] += (edges.points.z[i] - centers_.z[block]) * share;
+    centers_.reflectivity[block] +=
+        (edges.points.reflectivity[i] - centers_.reflectivity[block]) * share;
+  }
+  remove_small(1);
+}
+
+void Supervoxels::remove_small(std::uint32_t min_points) {
+  new_label_.assign(centers_.size(), kNoLabel);
+  std::uint32_t count = 0;
+  for (std::size_t block = 0; block < centers_.size(); ++block) {
+    if (block_points_[block] < min_points) continue;
+    centers_.x[count] = centers_.x[block];
+    centers_.y[count] = centers_.y[block];
+    centers_.z[count] = centers_.z[block];
+    centers_.reflectivity[count] = centers_.reflectivity[block];
+    block_points_[count] = block_points_[block];
+    new_label_[block] = count++;
+  }
+  centers_.resize(count);
+  block_points_.resize(count);
+  for (std::uint32_t& label : labels_) {
+    if (label != kNoLabel) label = new_label_[label];
+  }
+}
+
+}  // namespace scree
