@@ -101,7 +101,7 @@ Shape Shape::draw(ShapeKind kind, Random& random) {
                                           : length * largest * spread(kind);
   if (!is_positive(kind) && !is_negative(kind)) {
     shape.size_ = 1;
-    shape.size_ = std::tan(radians(random.uniform(6, 14))) / shape.steepest_slope();
+    shape.size_ = std::tan(radians(random.uniform(8, 19))) / shape.steepest_slope();
   }
   return shape;
 }

@@ -36,7 +36,7 @@ constexpr bool is_negative(ShapeKind kind) {
 class Shape {
 public:
   /// Draws size, proportions and outline for this kind: rocks 0.15-1.2 m high, holes 0.2-1.0 m
-  /// deep, mounds and hollows at most 6-14 degrees steep.
+  /// deep, mounds and hollows at most 8-19 degrees steep.
   static Shape draw(ShapeKind kind, Random& random);
 
   ShapeKind kind() const { return kind_; }
