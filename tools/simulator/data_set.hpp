@@ -19,7 +19,8 @@ struct SeedRange {
 };
 
 /// Clusters that the detector finds in terrains of these seeds, with their truth. Clouds have
-/// 600,000 to 1,000,000 points.
+/// 600,000 to 1,000,000 points; sweeps are one turn at 5, 10 or 20 Hz of the lidar that `settings`
+/// describes, and only obstacles that it shows well enough (see Visibility) are asked for.
 /// @param progress called after each seed with the number done
 LabelledClusters make_data_set(Profile profile, const Settings& settings, SeedRange seeds,
                                const std::function<void(std::size_t)>& progress);

@@ -107,7 +107,11 @@ SimulatedShot SimulatedLidar::cast(std::size_t laser, std::int64_t t_ns) {
   shot.range = static_cast<float>(std::max(*range + settings_.range_noise * random_.normal(), 0.0));
   shot.reflectivity = static_cast<std::uint8_t>(
       std::clamp(std::round(material * (0.6 + 0.4 * facing) + 2 * random_.normal()), 0.0, 255.0));
-  shot.feature = static_cast<std::uint8_t>(terrain_.feature_at(hit.x(), hit.y()));
+  // On the very brink of a hole, or on a rock's skirt, nothing is seen of it yet.
+  constexpr double kTelling = 0.05;
+  if (std::abs(terrain_.relief(hit.x(), hit.y())) > kTelling) {
+    shot.feature = static_cast<std::uint8_t>(terrain_.feature_at(hit.x(), hit.y()));
+  }
   return shot;
 }
 

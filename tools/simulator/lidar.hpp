@@ -24,7 +24,7 @@ struct SimulatedShot {
   std::int64_t t_ns = 0;
   float range = 0;                ///< as measured, metres; 0: no return
   std::uint8_t reflectivity = 0;  ///< as measured, 0..255
-  std::uint8_t feature = 0;       ///< id of the terrain's feature that it hit, 0 for none
+  std::uint8_t feature = 0;       ///< id of the feature hit more than 5 cm above or below ground
 };
 
 /// What a VLP-16 at rest on a terrain sends. Every shot is cast from its own direction at its own
