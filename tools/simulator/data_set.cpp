@@ -58,7 +58,7 @@ public:
     constexpr std::array kRates = {5.0, 10.0, 10.0, 20.0};
     lidar_.rate_hz = kRates[Random(seed).index(kRates.size())];
     TerrainSettings settings = scene_terrain();
-    settings.size = 2 * settings.placed_within;
+    settings.size = 2 * (settings.placed_within + 6);
     const Terrain terrain(settings, seed);
     const RayCaster caster(terrain);
     SimulatedLidar lidar(terrain, caster, lidar_, mount_, 0, seed);

@@ -53,12 +53,4 @@ LabelledClusters label_clusters(const Detector& detector, const Terrain& terrain
   return labelled;
 }
 
-std::vector<int> obstacle_ids(const Terrain& terrain) {
-  std::vector<int> ids;
-  for (const TerrainFeature& feature : terrain.features()) {
-    if (feature.kind) ids.push_back(feature.id);
-  }
-  return ids;
-}
-
 }  // namespace scree

@@ -25,7 +25,4 @@ struct LabelledClusters {
 LabelledClusters label_clusters(const Detector& detector, const Terrain& terrain,
                                 std::span<const int> asked);
 
-/// All rocks and holes of a terrain.
-std::vector<int> obstacle_ids(const Terrain& terrain);
-
 }  // namespace scree

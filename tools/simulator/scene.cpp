@@ -5,7 +5,7 @@ namespace scree {
 TerrainSettings scene_terrain() {
   TerrainSettings settings;
   settings.size = 64;
-  settings.placed_within = 14;
+  settings.placed_within = 10;
   settings.clear_radius = 1.5;
   settings.level_radius = 0.8;
   return settings;

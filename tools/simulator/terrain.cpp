@@ -243,4 +243,12 @@ int Terrain::feature_at(double x, double y) const {
   return feature_[place(x, y).index];
 }
 
+std::vector<int> obstacle_ids(const Terrain& terrain) {
+  std::vector<int> ids;
+  for (const TerrainFeature& feature : terrain.features()) {
+    if (feature.kind) ids.push_back(feature.id);
+  }
+  return ids;
+}
+
 }  // namespace scree

@@ -98,4 +98,7 @@ private:
   std::vector<Disc> taken_;
 };
 
+/// All rocks and holes of a terrain.
+std::vector<int> obstacle_ids(const Terrain& terrain);
+
 }  // namespace scree

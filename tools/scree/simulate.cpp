@@ -1,0 +1,57 @@
+#include <memory>
+
+#include "commands.hpp"
+#include "progress.hpp"
+#include "simulator/capture.hpp"
+
+namespace scree::cli {
+namespace {
+
+struct Options {
+  std::string folder, cloud;
+  CaptureSettings capture;
+  CloudSettings points;
+};
+
+void run(const Options& options) {
+  if (options.folder.empty() == options.cloud.empty()) {
+    throw CLI::ValidationError("give either the folder of a capture or --cloud FILE.pcd");
+  }
+  Result<void> written;
+  if (options.cloud.empty()) {
+    Progress progress("casting", 1000);
+    written = write_capture(options.folder, options.capture, std::ref(progress));
+  } else {
+    written = write_cloud(options.cloud, options.points, options.capture.seed);
+  }
+  if (!written) throw Failure(written.error().message);
+}
+
+}  // namespace
+
+void add_simulate(CLI::App& app) {
+  auto* command = app.add_subcommand("simulate", "writes a synthetic capture with its truth");
+  auto options = std::make_shared<Options>();
+  auto* folder = command->add_option("DIR", options->folder, "folder of the capture");
+  auto* cloud = command->add_option("--cloud", options->cloud,
+                                    "write one reconstructed cloud instead, and FILE.truth.json");
+  cloud->excludes(folder);
+  command->add_option("--seed", options->capture.seed, "of terrain and noise")
+      ->capture_default_str();
+  command->add_option("--seconds", options->capture.seconds, "length of the capture")
+      ->excludes(cloud)
+      ->check(CLI::Range(0.05, 3600.0))
+      ->capture_default_str();
+  command->add_option("--rate", options->capture.rate_hz, "turns of the lidar a second")
+      ->excludes(cloud)
+      ->check(CLI::Range(5.0, 20.0))
+      ->capture_default_str();
+  command->add_flag("--dual", options->capture.dual, "dual returns")->excludes(cloud);
+  command->add_option("--points", options->points.points, "of the cloud")
+      ->needs(cloud)
+      ->check(CLI::Range(std::size_t{1}, std::size_t{100'000'000}))
+      ->capture_default_str();
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace scree::cli
