@@ -22,8 +22,8 @@ void SpaceCells::build(PointView points, float cell_size, float limit) {
     row_range_.include(floor_to_cell(points.y[i] * inverse_));
     layer_range_.include(floor_to_cell(points.z[i] * inverse_));
   }
-  columns_ = column_range_.count() + 2 * kReach;
-  layers_ = layer_range_.count() + 2 * kReach;
+  columns_ = column_range_.count() + 2ULL * kReach;
+  layers_ = layer_range_.count() + 2ULL * kReach;
 
   sort_.clear();
   for (std::size_t i = 0; i < points.size(); ++i) {

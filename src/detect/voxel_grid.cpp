@@ -7,7 +7,9 @@ namespace scree {
 namespace {
 
 /// A cloud may lack the reflectivity of a point; that is no reason to lose the point.
-float known(float reflectivity) { return std::isfinite(reflectivity) ? reflectivity : 0.0F; }
+float known(float reflectivity) {
+  return std::isfinite(reflectivity) ? reflectivity : 0.0F;
+}
 
 }  // namespace
 

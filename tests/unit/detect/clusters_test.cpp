@@ -112,8 +112,10 @@ struct Yard {
   PlaneCells cells{4000};
 
   explicit Yard(float spacing) {
-    for (float x = -4; x <= 4; x += spacing) {
-      for (float y = -4; y <= 4; y += spacing) {
+    const int steps = static_cast<int>(4 / spacing);
+    for (int row = -steps; row <= steps; ++row) {
+      for (int column = -steps; column <= steps; ++column) {
+        const float x = static_cast<float>(column) * spacing, y = static_cast<float>(row) * spacing;
         const bool rock = std::abs(x) < 0.5F && std::abs(y) < 0.5F;
         cloud.push_back(x, y, rock ? 3 : 1, 0);
       }

@@ -55,11 +55,11 @@ TEST_P(Gradient, IsTheFormulaOfThePaper) {
     const double x = cells.points().x[i], y = cells.points().y[i];
     std::array<std::array<std::optional<double>, 3>, 3> z;
     bool complete = true;
-    for (int row = 0; row < 3; ++row) {
-      for (int column = 0; column < 3; ++column) {
+    for (std::size_t row = 0; row < 3; ++row) {
+      for (std::size_t column = 0; column < 3; ++column) {
         if (row == 1 && column == 1) continue;
-        z[row][column] =
-            kernel_estimate(cloud, x + (column - 1) * d, y + (row - 1) * d, r, bandwidth, least);
+        z[row][column] = kernel_estimate(cloud, x + (double(column) - 1) * d,
+                                         y + (double(row) - 1) * d, r, bandwidth, least);
         complete = complete && z[row][column];
       }
     }
