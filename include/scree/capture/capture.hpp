@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "scree/core/result.hpp"
+
+namespace scree {
+
+/// The lidar's file of a capture: the capture itself when it is a file, else lidar.pcap or
+/// lidar.pcapng in its folder.
+Result<std::filesystem::path> lidar_file(const std::filesystem::path& capture);
+
+/// The configuration that belongs to a capture: `given` when not empty, else scree.toml in the
+/// capture's folder when there is one. Nothing: the defaults.
+std::optional<std::filesystem::path> settings_file(const std::filesystem::path& capture,
+                                                   const std::filesystem::path& given);
+
+}  // namespace scree

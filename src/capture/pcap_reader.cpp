@@ -1,0 +1,84 @@
+#include "scree/capture/pcap_reader.hpp"
+
+#include <pcap/pcap.h>
+#include <spdlog/fmt/fmt.h>
+
+#include <array>
+
+namespace scree {
+
+void PcapReader::Close::operator()(pcap* handle) const {
+  pcap_close(handle);
+}
+
+PcapReader::PcapReader(std::string name, std::unique_ptr<pcap, Close> handle)
+    : name_(std::move(name)),
+      handle_(std::move(handle)),
+      link_type_(pcap_datalink(handle_.get())) {}
+
+Result<PcapReader> PcapReader::open(const std::filesystem::path& file) {
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  if (!std::filesystem::exists(status)) return fail(fmt::format("{}: no such file", file.string()));
+  if (!std::filesystem::is_regular_file(status)) {
+    return fail(fmt::format("{}: not a file", file.string()));
+  }
+  if (std::filesystem::file_size(file, error) == 0) {
+    return fail(fmt::format("{}: the file is empty", file.string()));
+  }
+  std::array<char, PCAP_ERRBUF_SIZE> reason{};
+  std::unique_ptr<pcap, Close> handle(pcap_open_offline_with_tstamp_precision(
+      file.c_str(), PCAP_TSTAMP_PRECISION_NANO, reason.data()));
+  if (!handle) {
+    return fail(fmt::format("{}: cannot be read as a pcap or pcapng file ({})", file.string(),
+                            reason.data()));
+  }
+  return PcapReader(file.string(), std::move(handle));
+}
+
+bool PcapReader::next(PcapRecord& record) {
+  pcap_pkthdr* header = nullptr;
+  const u_char* bytes = nullptr;
+  const int result = pcap_next_ex(handle_.get(), &header, &bytes);
+  if (result != 1) {
+    if (result == PCAP_ERROR) {
+      broken_off_ = fmt::format("{}: breaks off: {}", name_, pcap_geterr(handle_.get()));
+    }
+    return false;
+  }
+  // With nanosecond precision tv_usec holds nanoseconds; a garbled record may hold any number.
+  constexpr std::int64_t kMostSeconds = 9'000'000'000;
+  const std::int64_t seconds = header->ts.tv_sec, nanoseconds = header->ts.tv_usec;
+  if (seconds < 0 || seconds > kMostSeconds || nanoseconds < 0 || nanoseconds >= 1'000'000'000) {
+    broken_off_ = fmt::format("{}: breaks off: a record has an impossible time", name_);
+    return false;
+  }
+  record.arrival_ns = seconds * 1'000'000'000 + nanoseconds;
+  record.bytes = {bytes, header->caplen};
+  record.original_size = header->len;
+  return true;
+}
+
+bool PcapReader::next(Datagram& datagram) {
+  PcapRecord record;
+  while (next(record)) {
+    switch (parse_frame(link_type_, record.bytes, record.original_size, datagram)) {
+      case FrameKind::udp:
+        ++frames_.udp;
+        datagram.arrival_ns = record.arrival_ns;
+        return true;
+      case FrameKind::other:
+        ++frames_.other;
+        break;
+      case FrameKind::fragment:
+        ++frames_.fragments;
+        break;
+      case FrameKind::truncated:
+        ++frames_.truncated;
+        break;
+    }
+  }
+  return false;
+}
+
+}  // namespace scree

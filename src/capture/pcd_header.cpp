@@ -1,0 +1,228 @@
+#include "pcd_header.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstring>
+#include <map>
+
+namespace scree {
+namespace {
+
+constexpr std::size_t kMostFields = 256, kMostCount = 4096;
+constexpr std::size_t kMostPoints = std::size_t{1} << 31;
+
+using Words = std::vector<std::string_view>;
+
+Words split(std::string_view line) {
+  Words words;
+  constexpr std::string_view kSpace = " \t\r";
+  for (std::size_t begin = 0;;) {
+    begin = line.find_first_not_of(kSpace, begin);
+    if (begin == std::string_view::npos) return words;
+    const std::size_t end = std::min(line.find_first_of(kSpace, begin), line.size());
+    words.push_back(line.substr(begin, end - begin));
+    begin = end;
+  }
+}
+
+std::optional<std::size_t> number(std::string_view word) {
+  std::size_t value = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error != std::errc() || end != word.data() + word.size()) return std::nullopt;
+  return value;
+}
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return result;
+}
+
+/// The lines of a header by their first word, and where the body begins.
+struct Lines {
+  std::map<std::string_view, Words> values;
+  std::size_t body = 0;
+};
+
+Result<Lines> header_lines(std::string_view file) {
+  Lines lines;
+  // A header is a few hundred bytes; what has none of its words this far in is no PCD file.
+  constexpr std::size_t kMostHeader = 1 << 16;
+  const std::string_view head = file.substr(0, kMostHeader);
+  for (std::size_t begin = 0; begin < head.size();) {
+    const std::size_t end = head.find('\n', begin);
+    if (end == std::string_view::npos) break;
+    Words words = split(head.substr(begin, end - begin));
+    begin = end + 1;
+    if (words.empty() || words[0].starts_with('#')) continue;
+    const std::string_view key = words[0];
+    constexpr std::array<std::string_view, 10> kKeys = {"VERSION", "FIELDS", "SIZE",   "TYPE",
+                                                        "COUNT",   "WIDTH",  "HEIGHT", "VIEWPOINT",
+                                                        "POINTS",  "DATA"};
+    if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end()) {
+      if (lines.values.empty()) return fail("is not a PCD file");
+      return fail("has an unknown line in its header");
+    }
+    words.erase(words.begin());
+    if (!lines.values.emplace(key, std::move(words)).second) {
+      return fail(fmt::format("has two {} lines in its header", key));
+    }
+    if (key == "DATA") {
+      lines.body = begin;
+      return lines;
+    }
+  }
+  return fail(lines.values.empty() ? "is not a PCD file" : "has no DATA line: its header is cut");
+}
+
+Result<std::size_t> single_number(const Lines& lines, std::string_view key, std::size_t low) {
+  const auto found = lines.values.find(key);
+  if (found == lines.values.end()) return fail(fmt::format("has no {} line in its header", key));
+  const auto value = found->second.size() == 1 ? number(found->second[0]) : std::nullopt;
+  if (!value || *value < low || *value > kMostPoints) {
+    return fail(fmt::format("has a bad {} line in its header", key));
+  }
+  return *value;
+}
+
+Result<std::vector<PcdField>> read_fields(const Lines& lines) {
+  const auto words_of = [&](std::string_view key) -> const Words* {
+    const auto found = lines.values.find(key);
+    return found == lines.values.end() ? nullptr : &found->second;
+  };
+  const Words* const names = words_of("FIELDS");
+  if (names == nullptr || names->empty() || names->size() > kMostFields) {
+    return fail("has no usable FIELDS line in its header");
+  }
+  for (const std::string_view key : {"SIZE", "TYPE", "COUNT"}) {
+    const Words* const words = words_of(key);
+    if (words == nullptr && key == "COUNT") continue;
+    if (words == nullptr || words->size() != names->size()) {
+      return fail(fmt::format("does not give one {} for each field", key));
+    }
+  }
+  std::vector<PcdField> fields;
+  std::size_t offset = 0;
+  for (std::size_t i = 0; i < names->size(); ++i) {
+    const std::string_view type = (*words_of("TYPE"))[i];
+    const auto size = number((*words_of("SIZE"))[i]);
+    const auto count = words_of("COUNT") == nullptr ? 1 : number((*words_of("COUNT"))[i]);
+    const bool whole = type == "I" || type == "U";
+    const bool known = whole ? size == 1 || size == 2 || size == 4 || size == 8
+                             : type == "F" && (size == 4 || size == 8);
+    if (!known || !count || *count < 1 || *count > kMostCount) {
+      return fail(
+          fmt::format("has a field {} of a bad type, size or count", (*names)[i].substr(0, 40)));
+    }
+    fields.push_back({std::string((*names)[i]), type[0], *size, *count, offset});
+    offset += *size * *count;
+  }
+  return fields;
+}
+
+std::string bytes_missing(std::size_t needed, std::size_t there) {
+  return fmt::format("is cut: {} bytes of points, of which {} are there", needed, there);
+}
+
+/// An error's sentence, or nothing when the body can be what the header says.
+std::optional<std::string> mismatch(const PcdHeader& header, std::string_view body) {
+  const std::size_t size = header.points * header.point_size;
+  switch (header.data) {
+    case PcdData::binary:
+      if (body.size() < size) return bytes_missing(size, body.size());
+      return std::nullopt;
+    case PcdData::binary_compressed: {
+      std::uint32_t packed = 0, unpacked = 0;
+      if (body.size() < 8) return bytes_missing(8, body.size());
+      std::memcpy(&packed, body.data(), 4);
+      std::memcpy(&unpacked, body.data() + 4, 4);
+      if (packed > body.size() - 8) return bytes_missing(packed, body.size() - 8);
+      // The format (LZF) turns three bytes into at most 264.
+      if (unpacked != size || unpacked > 88 * std::size_t{packed}) {
+        return "has compressed data of another size than its header says";
+      }
+      return std::nullopt;
+    }
+    case PcdData::ascii: {
+      std::size_t values = 0;
+      for (const PcdField& field : header.fields) values += field.count;
+      // A value is a character and a space at least.
+      if (header.points * values * 2 > body.size() + 1) {
+        return fmt::format("is cut: too short for {} points", header.points);
+      }
+      return std::nullopt;
+    }
+  }
+  return "has an unknown kind of data";
+}
+
+/// Padding is named "_"; binary_compressed leaves it out of the file.
+void remove_padding(PcdHeader& header) {
+  std::erase_if(header.fields, [](const PcdField& field) { return field.name == "_"; });
+  header.point_size = 0;
+  for (PcdField& field : header.fields) {
+    field.offset = header.point_size;
+    header.point_size += field.size * field.count;
+  }
+}
+
+}  // namespace
+
+const PcdField* PcdHeader::find(std::initializer_list<std::string_view> names) const {
+  for (const PcdField& field : fields) {
+    if (std::find(names.begin(), names.end(), lower(field.name)) != names.end()) return &field;
+  }
+  return nullptr;
+}
+
+Result<PcdHeader> parse_pcd_header(std::string_view file) {
+  const auto lines = header_lines(file);
+  if (!lines) return tl::make_unexpected(lines.error());
+  auto fields = read_fields(*lines);
+  if (!fields) return tl::make_unexpected(fields.error());
+  const auto width = single_number(*lines, "WIDTH", 0);
+  if (!width) return tl::make_unexpected(width.error());
+  const auto height = single_number(*lines, "HEIGHT", 0);
+  if (!height) return tl::make_unexpected(height.error());
+
+  PcdHeader header;
+  header.fields = std::move(*fields);
+  header.point_size =
+      header.fields.back().offset + header.fields.back().size * header.fields.back().count;
+  header.points = *width * *height;
+  header.body = lines->body;
+  if (lines->values.contains("POINTS")) {
+    const auto points = single_number(*lines, "POINTS", 0);
+    if (!points) return tl::make_unexpected(points.error());
+    if (*points != header.points) return fail("has POINTS that are not WIDTH times HEIGHT");
+  }
+  if (header.points > kMostPoints) return fail("has more points than can be");
+
+  const Words& data = lines->values.at("DATA");
+  if (data.size() == 1 && data[0] == "ascii") {
+    header.data = PcdData::ascii;
+  } else if (data.size() == 1 && data[0] == "binary") {
+    header.data = PcdData::binary;
+  } else if (data.size() == 1 && data[0] == "binary_compressed") {
+    header.data = PcdData::binary_compressed;
+    remove_padding(header);
+  } else {
+    return fail("has DATA that is neither ascii, binary nor binary_compressed");
+  }
+  for (const std::string_view name : {"x", "y", "z"}) {
+    const PcdField* const field = header.find({name});
+    if (field == nullptr) return fail(fmt::format("has no field {}", name));
+    if (!field->is_coordinate())
+      return fail(fmt::format("has a field {} that is not one float", name));
+  }
+  if (header.points == 0) return header;
+  if (const auto reason = mismatch(header, file.substr(header.body))) return fail(*reason);
+  return header;
+}
+
+}  // namespace scree

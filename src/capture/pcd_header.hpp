@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scree/core/result.hpp"
+
+namespace scree {
+
+enum class PcdData : std::uint8_t { ascii, binary, binary_compressed };
+
+struct PcdField {
+  std::string name;
+  char type = 'F';       ///< I, U or F
+  std::size_t size = 4;  ///< bytes of one value
+  std::size_t count = 1;
+  std::size_t offset = 0;  ///< in the point
+
+  /// One number that is to be read: a float or double for a coordinate.
+  bool is_coordinate() const { return type == 'F' && count == 1; }
+};
+
+/// The header of a PCD file, checked against the bytes that follow it.
+struct PcdHeader {
+  std::vector<PcdField> fields;
+  std::size_t points = 0;
+  std::size_t point_size = 0;  ///< bytes of one point
+  PcdData data = PcdData::ascii;
+  std::size_t body = 0;  ///< where the data begins in the file
+
+  /// The first field of one of these names, whatever their case.
+  const PcdField* find(std::initializer_list<std::string_view> names) const;
+};
+
+/// Reads and checks the header at the beginning of `file`, the bytes of a whole file. When it
+/// succeeds the body is as long as the header says (ascii: long enough to be it), and x, y, z are
+/// there.
+Result<PcdHeader> parse_pcd_header(std::string_view file);
+
+}  // namespace scree

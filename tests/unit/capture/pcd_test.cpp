@@ -1,0 +1,189 @@
+#include "scree/capture/pcd.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <pcl/PCLPointCloud2.h>
+#include <pcl/io/pcd_io.h>
+
+#include <cmath>
+#include <cstring>
+#include <random>
+
+#include "unit/temporary_folder.hpp"
+
+namespace scree {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::string header(const std::string& fields, const std::string& size, const std::string& type,
+                   const std::string& points, const std::string& data) {
+  return "# .PCD v0.7\nVERSION 0.7\nFIELDS " + fields + "\nSIZE " + size + "\nTYPE " + type +
+         "\nWIDTH " + points + "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + points + "\nDATA " +
+         data + "\n";
+}
+
+template <class... Values>
+std::string packed(Values... values) {
+  std::string bytes;
+  const auto append = [&](auto value) {
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+  };
+  (append(values), ...);
+  return bytes;
+}
+
+PointCloud sample(std::size_t size) {
+  PointCloud cloud(size);
+  for (std::size_t i = 0; i < size; ++i) {
+    const float f = static_cast<float>(i);
+    cloud.push_back(0.1F * f, -f, std::sin(f), static_cast<float>(i % 256));
+  }
+  return cloud;
+}
+
+void expect_equal(const PointCloud& a, const PointCloud& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a.x[i], b.x[i]);
+    EXPECT_EQ(a.y[i], b.y[i]);
+    EXPECT_EQ(a.z[i], b.z[i]);
+    EXPECT_EQ(a.reflectivity[i], b.reflectivity[i]);
+  }
+}
+
+TEST(Pcd, WhatIsWrittenReadsBack) {
+  const TemporaryFolder folder;
+  for (const std::size_t size : {0, 1, 1000}) {
+    const PointCloud cloud = sample(size);
+    ASSERT_TRUE(write_pcd(folder / "cloud.pcd", cloud));
+    const auto read = read_pcd(folder / "cloud.pcd");
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_EQ(read->capacity(), size);
+    expect_equal(cloud, *read);
+  }
+}
+
+TEST(Pcd, ReadsAllThreeKindsOfData) {
+  const TemporaryFolder folder;
+  const PointCloud cloud = sample(500);
+  ASSERT_TRUE(write_pcd(folder / "binary.pcd", cloud));
+  pcl::PCLPointCloud2 blob;
+  ASSERT_EQ(pcl::io::loadPCDFile((folder / "binary.pcd").string(), blob), 0);
+  const Eigen::Vector4f origin = Eigen::Vector4f::Zero();
+  const Eigen::Quaternionf level = Eigen::Quaternionf::Identity();
+  pcl::PCDWriter writer;
+  ASSERT_EQ(writer.writeASCII((folder / "ascii.pcd").string(), blob, origin, level, 9), 0);
+  ASSERT_EQ(writer.writeBinaryCompressed((folder / "compressed.pcd").string(), blob), 0);
+  for (const char* name : {"ascii.pcd", "compressed.pcd"}) {
+    const auto read = read_pcd(folder / name);
+    ASSERT_TRUE(read) << read.error().message;
+    expect_equal(cloud, *read);
+  }
+}
+
+TEST(Pcd, ReadsDoublesAndAnyNumberForReflectivity) {
+  const TemporaryFolder folder;
+  const auto one = [&](const std::string& bytes) {
+    const auto read = read_pcd(folder.write("cloud.pcd", bytes));
+    EXPECT_TRUE(read) << read.error().message;
+    EXPECT_EQ(read->size(), 1U);
+    EXPECT_EQ(read->x[0], 1.5F);
+    EXPECT_EQ(read->y[0], -2.0F);
+    EXPECT_EQ(read->z[0], 0.25F);
+    return read->reflectivity[0];
+  };
+  EXPECT_EQ(one(header("x y z", "4 4 4", "F F F", "1", "binary") + packed(1.5F, -2.0F, 0.25F)),
+            0.0F);
+  EXPECT_EQ(one(header("x y z", "4 4 4", "F F F", "1", "ascii") + "1.5 -2 0.25\n"), 0.0F);
+  EXPECT_EQ(one(header("i x z y", "1 8 8 8", "U F F F", "1", "binary") +
+                packed(std::uint8_t{200}, 1.5, 0.25, -2.0)),
+            200.0F);
+  EXPECT_EQ(one(header("x y z reflectivity", "4 4 4 2", "F F F I", "1", "binary") +
+                packed(1.5F, -2.0F, 0.25F, std::int16_t{-7})),
+            -7.0F);
+  EXPECT_EQ(
+      one(header("x y z Intensity", "8 8 8 8", "F F F F", "1", "ascii") + "1.5 -2 0.25 99.5\n"),
+      99.5F);
+  EXPECT_EQ(one("VERSION 0.7\r\nFIELDS x y z _ intensity\r\nSIZE 4 4 4 1 4\r\nTYPE F F F U U\r\n"
+                "COUNT 1 1 1 4 1\r\nWIDTH 1\r\nHEIGHT 1\r\nDATA binary\r\n" +
+                packed(1.5F, -2.0F, 0.25F, std::uint32_t{0}, std::uint32_t{12})),
+            12.0F);
+}
+
+TEST(Pcd, KeepsPointsThatAreNotFinite) {
+  const TemporaryFolder folder;
+  const auto read = read_pcd(folder.write(
+      "cloud.pcd", header("x y z", "4 4 4", "F F F", "2", "ascii") + "nan nan nan\n1 2 3\n"));
+  ASSERT_TRUE(read) << read.error().message;
+  ASSERT_EQ(read->size(), 2U);
+  EXPECT_TRUE(std::isnan(read->x[0]));
+  EXPECT_EQ(read->z[1], 3.0F);
+}
+
+std::string error_of(const std::string& bytes) {
+  const TemporaryFolder folder;
+  const auto read = read_pcd(folder.write("bad.pcd", bytes));
+  return read ? "no error" : read.error().message;
+}
+
+TEST(Pcd, EveryBadFileIsOneSentence) {
+  const std::string point = packed(1.0F, 2.0F, 3.0F);
+  const auto xyz = [](const std::string& points, const std::string& data) {
+    return header("x y z", "4 4 4", "F F F", points, data);
+  };
+  EXPECT_THAT(read_pcd("/nonexistent/cloud.pcd").error().message, HasSubstr("no such file"));
+  EXPECT_THAT(read_pcd("/tmp").error().message, HasSubstr("cannot be read"));
+  EXPECT_THAT(error_of(""), HasSubstr("bad.pcd: is not a PCD file"));
+  EXPECT_THAT(error_of("%PDF-1.7\nthis and that\n"), HasSubstr("is not a PCD file"));
+  EXPECT_THAT(error_of("VERSION 0.7\nFIELDS x y"), HasSubstr("no DATA line"));
+  EXPECT_THAT(error_of(xyz("2", "binary") + point),
+              HasSubstr("is cut: 24 bytes of points, of which 12"));
+  EXPECT_THAT(error_of(xyz("4000000000", "binary") + point), HasSubstr("bad WIDTH"));
+  EXPECT_THAT(error_of(xyz("2000000000", "binary") + point), HasSubstr("is cut"));
+  EXPECT_THAT(error_of(xyz("2000000000", "ascii") + "1 2 3\n"), HasSubstr("is cut"));
+  EXPECT_THAT(error_of(xyz("3", "ascii") + "1 2 3\n 4 5 6 \n"), HasSubstr("bad.pcd: "));
+  EXPECT_THAT(error_of(xyz("-1", "binary") + point), HasSubstr("bad WIDTH"));
+  EXPECT_THAT(error_of(xyz("1", "hexadecimal") + point), HasSubstr("DATA"));
+  EXPECT_THAT(error_of(header("x y", "4 4", "F F", "1", "binary") + point),
+              HasSubstr("no field z"));
+  EXPECT_THAT(error_of(header("x y z", "4 4", "F F F", "1", "binary") + point),
+              HasSubstr("one SIZE"));
+  EXPECT_THAT(error_of(header("x y z", "4 4 3", "F F F", "1", "binary") + point),
+              HasSubstr("field z"));
+  EXPECT_THAT(error_of(header("x y z", "4 4 4", "F F U", "1", "binary") + point),
+              HasSubstr("z that is not one float"));
+  EXPECT_THAT(error_of(xyz("1000", "binary_compressed") + packed(4U, 12000U, 0U)),
+              HasSubstr("compressed data of another size"));
+  EXPECT_THAT(error_of(xyz("1", "binary_compressed") + packed(4U, 12U, 0xFFFFFFFFU)),
+              HasSubstr("points that cannot be read"));
+}
+
+TEST(Pcd, SurvivesGarbledFiles) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_pcd(folder / "binary.pcd", sample(50)));
+  pcl::PCLPointCloud2 blob;
+  ASSERT_EQ(pcl::io::loadPCDFile((folder / "binary.pcd").string(), blob), 0);
+  pcl::PCDWriter writer;
+  writer.writeASCII((folder / "ascii.pcd").string(), blob);
+  writer.writeBinaryCompressed((folder / "compressed.pcd").string(), blob);
+  std::mt19937 random(11);
+  for (const char* name : {"binary.pcd", "ascii.pcd", "compressed.pcd"}) {
+    const std::string whole = bytes_of(folder / name);
+    for (int round = 0; round < 1500; ++round) {
+      std::string bytes =
+          whole.substr(0, random() % 3 == 0 ? random() % whole.size() : whole.size());
+      for (int flips = 0; flips < 3 && !bytes.empty(); ++flips) {
+        const std::size_t where = random() % (random() % 2 == 0 ? bytes.size() : 200);
+        bytes[std::min(where, bytes.size() - 1)] = static_cast<char>(random());
+      }
+      const auto read = read_pcd(folder.write("garbled.pcd", bytes));
+      if (!read) {
+        ASSERT_EQ(read.error().message.find('\n'), std::string::npos);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace scree

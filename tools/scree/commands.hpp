@@ -1,0 +1,21 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <stdexcept>
+#include <string>
+
+namespace scree::cli {
+
+/// Thrown by a subcommand whose work failed: one sentence for stderr, exit code 1.
+/// For wrong usage that CLI11 cannot see by itself throw CLI::ValidationError: exit code 2.
+struct Failure : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// One file a subcommand; each adds itself with its options and its callback, and is called in
+// main.cpp. Only the asked-for result goes to stdout.
+
+void add_info(CLI::App& app);
+void add_decode(CLI::App& app);
+
+}  // namespace scree::cli

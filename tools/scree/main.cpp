@@ -1,0 +1,37 @@
+#include <cstdio>
+#include <exception>
+
+#include "commands.hpp"
+
+namespace {
+
+enum ExitCode : int { kDone = 0, kFailed = 1, kUsage = 2 };
+
+void add_all(CLI::App& app) {
+  scree::cli::add_info(app);
+  scree::cli::add_decode(app);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Obstacle detection for robots on rough ground");
+  app.name("scree");
+  app.set_version_flag("--version", SCREE_VERSION);
+  app.require_subcommand(1);
+  add_all(app);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kDone : kUsage;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "scree: %s\n", error.what());
+    return kFailed;
+  }
+  // A full disk or a closed pipe shows itself only when the last bytes are written out.
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    std::fprintf(stderr, "scree: cannot write to standard output\n");
+    return kFailed;
+  }
+  return kDone;
+}
