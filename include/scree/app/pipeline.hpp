@@ -17,6 +17,8 @@ public:
   /// @param config_folder where a relative name of a weights file is looked for first
   static Result<Pipeline> make(const Settings& settings,
                                const std::filesystem::path& config_folder);
+  /// With a detector made elsewhere, of settings.detect_sweep.
+  Pipeline(const Settings& settings, Detector detector);
 
   /// @return the list of this sweep; valid until the next call
   const ObstacleList& process(const Sweep& sweep);
@@ -26,8 +28,6 @@ public:
   const PointCloud& ground() const { return ground_; }
 
 private:
-  Pipeline(const Settings& settings, Detector detector);
-
   void move_to_base(const Sweep& sweep);
 
   LidarSettings lidar_;

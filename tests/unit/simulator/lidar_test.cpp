@@ -1,0 +1,93 @@
+#include "simulator/lidar.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string_view>
+
+#include "scree/drivers/velodyne/data_packet.hpp"
+
+namespace scree {
+namespace {
+
+using namespace velodyne;
+
+constexpr std::int64_t kStart = 1598612520'000000000;
+
+struct Case {
+  LidarModel model;
+  ReturnMode mode;
+  double rate_hz;
+};
+
+class SimulatedLidarDecodes : public testing::TestWithParam<Case> {};
+
+TEST_P(SimulatedLidarDecodes, ToTheShotsThatWereCast) {
+  TerrainSettings terrain_settings;
+  terrain_settings.size = 30;
+  terrain_settings.clear_radius = 1.5;
+  terrain_settings.placed_within = 10;
+  const Terrain terrain(terrain_settings, 1);
+  const RayCaster caster(terrain);
+  SimulatedLidarSettings settings;
+  settings.model = GetParam().model;
+  settings.mode = GetParam().mode;
+  settings.rate_hz = GetParam().rate_hz;
+  const Pose mount{{0.1, 0, 0.95}, from_roll_pitch_yaw(0, radians(6), 0)};
+  SimulatedLidar lidar(terrain, caster, settings, mount, kStart, 1);
+  const PacketDecoder decoder(settings.model);
+  const auto decoded = std::make_unique<Shots>();
+  const bool dual = settings.mode == ReturnMode::dual;
+  int returns = 0;
+  for (int packet = 0; packet < 100; ++packet) {
+    lidar.advance();
+    const auto bytes = lidar.data_packet();
+    ASSERT_EQ(check_data_packet(bytes, settings.model), Refusal::none);
+    decoder.decode(bytes, *decoded);
+    EXPECT_EQ(timestamp_us(bytes), lidar.packet_ns() % kHourNs / 1000);
+    for (std::size_t i = 0; i < kShots; ++i) {
+      const std::size_t block = block_of(i);
+      const std::size_t cast = (dual ? block / 2 : block) * kShotsPerBlock + i % kShotsPerBlock;
+      const SimulatedShot& shot = lidar.shots()[cast];
+      EXPECT_EQ(decoded->time_ns[i], shot.t_ns - lidar.packet_ns());
+      ASSERT_NEAR(decoded->range[i], shot.range, 0.00101);
+      if (shot.range <= 0) continue;
+      ++returns;
+      EXPECT_EQ(decoded->reflectivity[i], shot.reflectivity);
+      // Azimuths are sent in steps of 0.01 deg.
+      const Eigen::Vector3d point(static_cast<double>(decoded->x[i]),
+                                  static_cast<double>(decoded->y[i]),
+                                  static_cast<double>(decoded->z[i]));
+      const double tolerance = 0.0015 + radians(0.011) * static_cast<double>(shot.range);
+      ASSERT_LT((point - lidar.point_of(cast)).norm(), tolerance) << packet << ' ' << i;
+      // And the point lies on the terrain, but for the noise of its range.
+      const Eigen::Vector3d in_world = mount * point;
+      EXPECT_NEAR(in_world.z(), terrain.height(in_world.x(), in_world.y()), 0.6);
+    }
+  }
+  EXPECT_GT(returns, 10000);
+}
+
+INSTANTIATE_TEST_SUITE_P(Modes, SimulatedLidarDecodes,
+                         testing::Values(Case{LidarModel::vlp16, ReturnMode::strongest, 10},
+                                         Case{LidarModel::vlp16, ReturnMode::dual, 10},
+                                         Case{LidarModel::vlp16, ReturnMode::last, 20},
+                                         Case{LidarModel::puck_hires, ReturnMode::strongest, 5}));
+
+TEST(SimulatedLidar, PositionPacketCarriesTheTimeOfDay) {
+  TerrainSettings terrain_settings;
+  terrain_settings.size = 4;
+  terrain_settings.positive = terrain_settings.negative = terrain_settings.smooth = 0;
+  const Terrain terrain(terrain_settings, 1);
+  const RayCaster caster(terrain);
+  SimulatedLidar lidar(terrain, caster, {}, {{0, 0, 1}, Eigen::Quaterniond::Identity()}, kStart, 1);
+  lidar.advance();
+  const auto packet = lidar.position_packet();
+  const std::string_view sentence(reinterpret_cast<const char*>(packet.data()) + kNmeaOffset);
+  EXPECT_TRUE(sentence.starts_with("$GPRMC,110200,A,")) << sentence;
+  EXPECT_NE(sentence.find(",280820,"), std::string_view::npos) << sentence;
+  EXPECT_EQ(read<std::uint32_t>(packet, kPositionTimestampOffset), 120001327U);
+}
+
+}  // namespace
+}  // namespace scree

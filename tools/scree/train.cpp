@@ -1,0 +1,179 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <map>
+
+#include "commands.hpp"
+#include "progress.hpp"
+#include "scree/config/keys.hpp"
+#include "scree/learn/metrics.hpp"
+#include "scree/learn/training.hpp"
+#include "simulator/data_set.hpp"
+#include "simulator/scene.hpp"
+
+namespace scree::cli {
+namespace {
+
+/// Seeds of the three parts stand this far apart, so that no terrain is in two of them.
+constexpr std::uint64_t kPart = 100'000;
+
+struct Options {
+  Profile profile = Profile::cloud;
+  InputForm counts = InputForm::log1p;
+  std::string config, out;
+  std::uint64_t seed = 1;
+  std::size_t training = 60, validation = 20, held_out = 20;
+  TrainingSettings learn;
+};
+
+const std::map<std::string, Profile> kProfiles = {{"cloud", Profile::cloud},
+                                                  {"sweep", Profile::sweep}};
+const std::map<std::string, InputForm> kForms = {{"raw", InputForm::raw},
+                                                 {"log1p", InputForm::log1p}};
+
+template <class Value>
+std::string name_in(const std::map<std::string, Value>& names, Value value) {
+  for (const auto& [name, candidate] : names) {
+    if (candidate == value) return name;
+  }
+  return "?";
+}
+
+struct Part {
+  std::string name;
+  SeedRange seeds;
+  LabelledClusters clusters;
+
+  std::size_t count(Label label) const {
+    return static_cast<std::size_t>(
+        std::ranges::count(clusters.samples, label, [](const Sample& s) { return s.label; }));
+  }
+};
+
+Part make_part(const std::string& name, std::uint64_t number, std::size_t count,
+               const Options& options, const Settings& settings) {
+  Part part{name, {options.seed + number * kPart, count}, {}};
+  Progress progress("clusters for " + name, count);
+  part.clusters = make_data_set(options.profile, settings, part.seeds, std::ref(progress));
+  return part;
+}
+
+std::string describe(const Part& part) {
+  return fmt::format(
+      "{:<10} seeds {}-{}: {} clusters (positive {}, negative {}, none {}); {} of {} obstacles "
+      "have a cluster\n",
+      part.name, part.seeds.first, part.seeds.first + part.seeds.count - 1,
+      part.clusters.samples.size(), part.count(Label::positive), part.count(Label::negative),
+      part.count(Label::none), part.clusters.found, part.clusters.obstacles);
+}
+
+std::string table_of(const Scores& scores) {
+  std::string table = "kind      precision  recall     F1\n";
+  const auto row = [&](std::string_view kind, const Score& score) {
+    table += fmt::format("{:<9} {:9.3f} {:7.3f} {:6.3f}\n", kind, score.precision(), score.recall(),
+                         score.f1());
+  };
+  row("positive", scores.positive);
+  row("negative", scores.negative);
+  row("all", scores.all());
+  return table;
+}
+
+/// Everything that the weights depend on, and what they reach. No date: the same command gives the
+/// same file.
+std::string provenance(const Options& options, const DetectSettings& detect,
+                       const std::vector<Part>& parts, const TrainingResult& result,
+                       const Scores& scores) {
+  const std::string profile = name_in(kProfiles, options.profile);
+  std::string text = fmt::format(
+      "Network for {}s, trained by Levenberg-Marquardt on clusters of simulated terrain.\n"
+      "scree train --profile {} --seed {} --training {} --validation {} --held-out {} --hidden {} "
+      "--restarts {} --counts {}\n\n",
+      profile, profile, options.seed, options.training, options.validation, options.held_out,
+      options.learn.hidden, options.learn.restarts, name_in(kForms, options.counts));
+  for (const Part& part : parts) text += describe(part);
+  text += fmt::format("{} steps, best {}: {}; mean squared error {:.6f}, validation {:.6f}\n\n",
+                      result.curve.size() - 1, result.best, name_of(result.stop),
+                      result.curve[result.best].training_error,
+                      result.curve[result.best].validation_error);
+  text += "Clusters of the held-out part:\n" + table_of(scores);
+  text += "\nThe detector's settings:\n";
+  for_each_detect_key("detect." + profile, detect, [&](const Key& key, const auto& value) {
+    using Value = std::decay_t<decltype(value)>;
+    if constexpr (std::is_enum_v<Value>) {
+      text += fmt::format("{} = \"{}\"\n", key.name, name_of(value));
+    } else if constexpr (!std::is_same_v<Value, std::string>) {
+      text += fmt::format("{} = {}\n", key.name, value);
+    }
+  });
+  return text;
+}
+
+void run(Options options) {
+  Settings settings;
+  settings.lidar = scene_lidar();
+  if (!options.config.empty()) {
+    const auto loaded = load_settings(options.config);
+    if (!loaded) throw Failure(loaded.error().message);
+    settings = *loaded;
+  }
+  const bool is_cloud = options.profile == Profile::cloud;
+  const DetectSettings& detect = is_cloud ? settings.detect_cloud : settings.detect_sweep;
+  if (options.out.empty()) options.out = "config/" + detect.network;
+  options.learn.seed = options.seed;
+  options.learn.forms[acute_count] = options.learn.forms[obtuse_count] = options.counts;
+
+  const std::vector<Part> parts = {
+      make_part("training", 0, options.training, options, settings),
+      make_part("validation", 1, options.validation, options, settings),
+      make_part("held-out", 2, options.held_out, options, settings)};
+  for (const Part& part : parts) fmt::print("{}", describe(part));
+  if (parts[0].clusters.samples.empty()) {
+    throw Failure("the detector found no cluster to train on, see its settings");
+  }
+  const TrainedNetwork trained =
+      train_network(parts[0].clusters.samples, parts[1].clusters.samples, options.learn);
+  const Scores scores = evaluate(trained.network, parts[2].clusters.samples, detect.min_confidence);
+  fmt::print("\nclusters of the held-out part:\n{}", table_of(scores));
+
+  const auto saved =
+      trained.network.save(options.out, provenance(options, detect, parts, trained.result, scores));
+  if (!saved) throw Failure(saved.error().message);
+  fmt::print("\nwrote {}\n", options.out);
+}
+
+}  // namespace
+
+void add_train(CLI::App& app) {
+  auto* command = app.add_subcommand("train", "trains the network on simulated terrain");
+  auto options = std::make_shared<Options>();
+  command->add_option("--profile", options->profile, "cloud or sweep")
+      ->transform(CLI::CheckedTransformer(kProfiles))
+      ->default_str("cloud");
+  command->add_option("--config", options->config, "the detector's settings, and the lidar's mount")
+      ->check(CLI::ExistingFile);
+  command->add_option("--out", options->out, "weights file, default config/ and its shipped name");
+  command->add_option("--seed", options->seed, "first terrain of the training part")
+      ->capture_default_str();
+  const auto terrains = CLI::Range(std::size_t{1}, std::size_t{kPart});
+  command->add_option("--training", options->training, "terrains to train on")
+      ->check(terrains)
+      ->capture_default_str();
+  command->add_option("--validation", options->validation, "terrains that end the training")
+      ->check(terrains)
+      ->capture_default_str();
+  command->add_option("--held-out", options->held_out, "terrains that judge the result")
+      ->check(terrains)
+      ->capture_default_str();
+  command->add_option("--hidden", options->learn.hidden, "units of the hidden layer")
+      ->check(CLI::Range(std::size_t{1}, Network::kMaxHidden))
+      ->capture_default_str();
+  command->add_option("--restarts", options->learn.restarts, "starts from other weights")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command->add_option("--counts", options->counts, "how F4 and F5 enter: raw or log1p")
+      ->transform(CLI::CheckedTransformer(kForms))
+      ->default_str("log1p");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace scree::cli

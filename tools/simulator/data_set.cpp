@@ -1,0 +1,107 @@
+#include "simulator/data_set.hpp"
+
+#include <array>
+
+#include "scree/app/pipeline.hpp"
+#include "simulator/lidar.hpp"
+#include "simulator/scene.hpp"
+#include "simulator/visibility.hpp"
+
+namespace scree {
+namespace {
+
+void append(LabelledClusters& all, const LabelledClusters& part) {
+  all.samples.insert(all.samples.end(), part.samples.begin(), part.samples.end());
+  all.obstacles += part.obstacles;
+  all.found += part.found;
+}
+
+/// More features than a walk would meet, so that fewer terrains are needed.
+TerrainSettings crowded() {
+  TerrainSettings settings;
+  settings.positive = 18;
+  settings.negative = 14;
+  settings.smooth = 24;
+  settings.placed_within = 19;
+  return settings;
+}
+
+class FromClouds {
+public:
+  explicit FromClouds(const Settings& settings)
+      : detector_(settings.detect_cloud, Network()),
+        unused_(static_cast<std::size_t>(settings.detect_cloud.max_obstacles)) {}
+
+  LabelledClusters operator()(std::uint64_t seed) {
+    const Terrain terrain(crowded(), seed);
+    CloudSettings cloud;
+    cloud.points = 600'000 + Random(seed).index(400'001);
+    detector_.detect(reconstructed_cloud(terrain, cloud, seed), unused_);
+    return label_clusters(detector_, terrain, obstacle_ids(terrain));
+  }
+
+private:
+  Detector detector_;
+  FixedVector<Obstacle> unused_;
+};
+
+class FromSweeps {
+public:
+  explicit FromSweeps(const Settings& settings)
+      : mount_(settings.lidar.mount()),
+        pipeline_(settings, Detector(settings.detect_sweep, Network())),
+        sweep_(static_cast<std::size_t>(settings.detect_sweep.max_points)) {
+    lidar_.model = settings.lidar.model;
+  }
+
+  LabelledClusters operator()(std::uint64_t seed) {
+    constexpr std::array kRates = {5.0, 10.0, 10.0, 20.0};
+    lidar_.rate_hz = kRates[Random(seed).index(kRates.size())];
+    TerrainSettings settings = scene_terrain();
+    settings.size = 2 * settings.placed_within;
+    const Terrain terrain(settings, seed);
+    const RayCaster caster(terrain);
+    SimulatedLidar lidar(terrain, caster, lidar_, mount_, 0, seed);
+    Visibility visibility(terrain);
+    sweep_.clear();
+    for (lidar.advance(); lidar.turns(lidar.packet_end_ns()) <= 1; lidar.advance()) {
+      visibility.add(lidar.shots());
+      for (std::size_t i = 0; i < lidar.shots().size(); ++i) {
+        const SimulatedShot& shot = lidar.shots()[i];
+        if (shot.range <= 0) continue;
+        const Eigen::Vector3f point = lidar.point_of(i).cast<float>();
+        sweep_.points.push_back(point.x(), point.y(), point.z(), shot.reflectivity);
+      }
+    }
+    visibility.end_sweep();
+    pipeline_.process(sweep_);
+    return label_clusters(pipeline_.detector(), terrain, visibility.seen());
+  }
+
+private:
+  SimulatedLidarSettings lidar_;
+  Pose mount_;
+  Pipeline pipeline_;
+  Sweep sweep_;
+};
+
+template <class From>
+LabelledClusters gather(From from, SeedRange seeds,
+                        const std::function<void(std::size_t)>& progress) {
+  LabelledClusters all;
+  for (std::size_t i = 0; i < seeds.count; ++i) {
+    append(all, from(seeds.first + i));
+    progress(i + 1);
+  }
+  return all;
+}
+
+}  // namespace
+
+LabelledClusters make_data_set(Profile profile, const Settings& settings, SeedRange seeds,
+                               const std::function<void(std::size_t)>& progress) {
+  return profile == Profile::cloud ? gather(FromClouds(settings), seeds, progress)
+                                   : gather(FromSweeps(settings), seeds, progress);
+}
+
+}  // namespace scree

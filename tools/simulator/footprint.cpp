@@ -1,0 +1,33 @@
+#include "simulator/footprint.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace scree {
+
+bool contains(const Footprint& footprint, const Eigen::Vector2d& point) {
+  bool inside = false;
+  for (std::size_t i = 0; i < footprint.size(); ++i) {
+    const Eigen::Vector2d& a = footprint[i];
+    const Eigen::Vector2d& b = footprint[(i + 1) % footprint.size()];
+    if ((a.y() > point.y()) == (b.y() > point.y())) continue;
+    const double crossing = a.x() + (point.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
+    inside ^= point.x() < crossing;
+  }
+  return inside;
+}
+
+double distance(const Footprint& footprint, const Eigen::Vector2d& point) {
+  if (contains(footprint, point)) return 0;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < footprint.size(); ++i) {
+    const Eigen::Vector2d& a = footprint[i];
+    const Eigen::Vector2d edge = footprint[(i + 1) % footprint.size()] - a;
+    const double length = edge.squaredNorm();
+    const double along = length > 0 ? std::clamp((point - a).dot(edge) / length, 0.0, 1.0) : 0;
+    nearest = std::min(nearest, (point - a - along * edge).norm());
+  }
+  return nearest;
+}
+
+}  // namespace scree

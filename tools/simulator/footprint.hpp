@@ -1,0 +1,15 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace scree {
+
+/// Outline of an obstacle seen from above: corners in order, not closed, metres.
+using Footprint = std::vector<Eigen::Vector2d>;
+
+bool contains(const Footprint& footprint, const Eigen::Vector2d& point);
+/// Distance to the nearest point of the footprint; 0 inside. Infinite for an empty footprint.
+double distance(const Footprint& footprint, const Eigen::Vector2d& point);
+
+}  // namespace scree

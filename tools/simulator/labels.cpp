@@ -1,0 +1,64 @@
+#include "simulator/labels.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace scree {
+namespace {
+
+constexpr double kGrowth = 0.15;
+
+bool covers(const TerrainFeature& feature, const Eigen::Vector2d& point) {
+  return distance(feature.footprint, point) <= kGrowth;
+}
+
+/// The feature that a cluster belongs to, null for none.
+const TerrainFeature* feature_of(const Cluster& cluster, const Detector& detector,
+                                 const std::vector<TerrainFeature>& features) {
+  const Eigen::Vector2d middle(static_cast<double>(cluster.box.center_x),
+                               static_cast<double>(cluster.box.center_y));
+  for (const TerrainFeature& feature : features) {
+    if (covers(feature, middle)) return &feature;
+  }
+  const auto members = detector.clusters().members(cluster);
+  const PointCloud& points = detector.kept().points;
+  for (const TerrainFeature& feature : features) {
+    const auto covered = std::ranges::count_if(members, [&](std::uint32_t i) {
+      return covers(feature, {static_cast<double>(points.x[i]), static_cast<double>(points.y[i])});
+    });
+    if (2 * static_cast<std::size_t>(covered) >= members.size()) return &feature;
+  }
+  return nullptr;
+}
+
+Label label_of(const TerrainFeature* feature) {
+  if (feature == nullptr || !feature->kind) return Label::none;
+  return feature->kind == ObstacleKind::positive ? Label::positive : Label::negative;
+}
+
+}  // namespace
+
+LabelledClusters label_clusters(const Detector& detector, const Terrain& terrain,
+                                std::span<const int> asked) {
+  LabelledClusters labelled;
+  labelled.obstacles = asked.size();
+  std::vector<bool> has_cluster(Terrain::kMostFeatures + 1);
+  for (const Cluster& cluster : detector.clusters().all()) {
+    if (!std::ranges::all_of(cluster.features, [](float f) { return std::isfinite(f); })) continue;
+    const TerrainFeature* feature = feature_of(cluster, detector, terrain.features());
+    labelled.samples.push_back({cluster.features, label_of(feature)});
+    if (feature != nullptr) has_cluster[static_cast<std::size_t>(feature->id)] = true;
+  }
+  for (const int id : asked) labelled.found += has_cluster[static_cast<std::size_t>(id)] ? 1U : 0U;
+  return labelled;
+}
+
+std::vector<int> obstacle_ids(const Terrain& terrain) {
+  std::vector<int> ids;
+  for (const TerrainFeature& feature : terrain.features()) {
+    if (feature.kind) ids.push_back(feature.id);
+  }
+  return ids;
+}
+
+}  // namespace scree

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "scree/detect/detector.hpp"
+#include "scree/learn/sample.hpp"
+#include "simulator/terrain.hpp"
+
+namespace scree {
+
+/// What the detector made of one terrain.
+struct LabelledClusters {
+  std::vector<Sample> samples;
+  std::size_t obstacles = 0;  ///< rocks and holes that are asked for
+  std::size_t found = 0;      ///< of them those with a cluster
+};
+
+/// Names the truth of each cluster of the detector's last cloud, which must lie in the terrain's
+/// frame: the feature whose footprint, grown by 0.15 m, covers the middle of the cluster's box or
+/// at least half of its points. Clusters whose features are not finite are left out.
+/// @param asked ids of the features that count as obstacles asked for; other features still give
+/// their clusters a label
+LabelledClusters label_clusters(const Detector& detector, const Terrain& terrain,
+                                std::span<const int> asked);
+
+/// All rocks and holes of a terrain.
+std::vector<int> obstacle_ids(const Terrain& terrain);
+
+}  // namespace scree

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "scree/core/random.hpp"
+
+namespace scree {
+
+/// Smooth random surface of one octave: gradient noise (Perlin, SIGGRAPH 2002) over a square of
+/// `size` metres about the origin, about -0.7..0.7, with bumps about `wavelength` metres apart.
+class GradientNoise {
+public:
+  GradientNoise(Random random, double size, double wavelength);
+  /// Points outside the square take the value of its edge.
+  double operator()(double x, double y) const;
+
+private:
+  struct Slope {
+    double x, y;
+  };
+  double wavelength_, half_;
+  std::size_t cells_;
+  std::vector<Slope> slopes_;
+};
+
+}  // namespace scree

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "simulator/terrain.hpp"
+
+namespace scree {
+
+/// Where straight beams meet a terrain. Blocks of the raster that a beam passes above are skipped.
+class RayCaster {
+public:
+  /// Keeps a reference to the terrain.
+  explicit RayCaster(const Terrain& terrain);
+
+  /// Distance from the origin to the surface, metres, right to about a millimetre; none when the
+  /// beam ends or leaves the terrain first. Features narrower than a centimetre may be missed.
+  /// @pre direction has length 1, origin lies above the ground
+  std::optional<double> cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                             double max_range) const;
+
+private:
+  std::optional<double> march(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                              double from, double to) const;
+
+  const Terrain& terrain_;
+  std::size_t blocks_;          // a side
+  double block_size_;           // metres
+  std::vector<float> highest_;  // height in each block
+  double top_;
+};
+
+}  // namespace scree

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "scree/core/random.hpp"
+#include "simulator/footprint.hpp"
+
+namespace scree {
+
+/// What stands on the ground or is dug into it.
+enum class ShapeKind : std::uint8_t {
+  boulder,  ///< round, steep all round
+  block,    ///< tilted flat top, walls
+  peak,     ///< pointed
+  bump,     ///< round above and below, yet steeper than 30 degrees
+  bowl,     ///< parabola
+  pit,      ///< flat floor, walls
+  crater,   ///< bowl with a rim thrown up around it
+  ditch,    ///< long, gently bent, tapering off at both ends
+  mound,    ///< no obstacle: smooth
+  hollow    ///< no obstacle: smooth
+};
+std::string_view name_of(ShapeKind kind);
+
+constexpr bool is_positive(ShapeKind kind) {
+  return kind <= ShapeKind::bump;
+}
+constexpr bool is_negative(ShapeKind kind) {
+  return kind >= ShapeKind::bowl && kind <= ShapeKind::ditch;
+}
+
+/// Height of one feature above the ground without it, in its own axes (origin at its centre).
+class Shape {
+public:
+  /// Draws size, proportions and outline for this kind: rocks 0.15-1.2 m high, holes 0.2-1.0 m
+  /// deep, mounds and hollows at most 8-19 degrees steep.
+  static Shape draw(ShapeKind kind, Random& random);
+
+  ShapeKind kind() const { return kind_; }
+  /// Beyond this distance from the centre height() is 0, metres.
+  double reach() const { return reach_; }
+  /// Metres, below zero in a hole; 0 outside the reach.
+  double height(const Eigen::Vector2d& point) const;
+  /// Whether the point lies inside the outline (for a crater: inside its rim's crest).
+  bool inside(const Eigen::Vector2d& point) const;
+  Footprint footprint() const;
+
+private:
+  static constexpr std::size_t kDirections = 256;
+
+  Eigen::Vector2d to_own_axes(const Eigen::Vector2d& point) const;
+  /// Distance from the centre in units of the outline's, 0 at the centre and 1 on the outline; for
+  /// a ditch distance from its middle line.
+  double radius(const Eigen::Vector2d& own) const;
+  double outline(double angle) const;
+  double profile(double radius, const Eigen::Vector2d& own) const;
+  void draw_outline(Random& random, double irregularity);
+  double steepest_slope() const;
+
+  ShapeKind kind_ = ShapeKind::boulder;
+  double size_ = 0;                  ///< height or depth, metres, above zero
+  Eigen::Vector2d semi_axes_{1, 1};  ///< half length, half width, metres
+  double cos_yaw_ = 1, sin_yaw_ = 0;
+  double sharpness_ = 1;  ///< of the flanks; its meaning depends on the kind
+  double detail_ = 0;     ///< tilt of a block, rim of a crater, bend of a ditch
+  double reach_ = 0;
+  std::array<double, kDirections> outline_{};
+};
+
+}  // namespace scree
