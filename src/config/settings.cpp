@@ -142,10 +142,10 @@ std::optional<std::string> contradiction(const Settings& settings) {
     const bool is_cloud = detect == &settings.detect_cloud;
     const std::string table = is_cloud ? "detect.cloud" : "detect.sweep";
     if (detect->ground_inner >= detect->ground_outer) {
-      return table + ".ground_inner must be below " + table + ".ground_outer";
+      return fmt::format("{0}.ground_inner must be below {0}.ground_outer", table);
     }
     if (detect->max_edge_points > detect->max_points) {
-      return table + ".max_edge_points must not be above " + table + ".max_points";
+      return fmt::format("{0}.max_edge_points must not be above {0}.max_points", table);
     }
   }
   return std::nullopt;

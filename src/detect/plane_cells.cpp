@@ -11,7 +11,7 @@ void PlaneCells::build(PointView cloud, float radius) {
     column_range_.include(floor_to_cell(cloud.x[i] * inverse_));
     row_range_.include(floor_to_cell(cloud.y[i] * inverse_));
   }
-  columns_ = column_range_.count() + 2 * kReach;
+  columns_ = column_range_.count() + 2ULL * kReach;
 
   sort_.clear();
   for (std::size_t i = 0; i < cloud.size(); ++i) {

@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include "scree/detect/cell.hpp"
+#include <numbers>
 
 namespace scree {
 
 Supervoxels::Supervoxels(std::size_t max_points)
-    : sort_(max_points),
-      keys_(max_points),
+    : point_cells_(max_points),
       voxels_(max_points),
+      voxel_centers_(max_points),
+      seed_cells_(max_points),
       voxel_of_(max_points),
       neighbours_(max_points * kNeighbours),
       block_means_(max_points),
@@ -69,119 +69,76 @@ void Supervoxels::segment(const EdgePoints& edges, const SupervoxelSettings& set
 
 void Supervoxels::fill_voxels(const EdgePoints& edges, float voxel_size) {
   const PointCloud& points = edges.points;
-  const float inverse = 1.0F / voxel_size;
-  CellRange columns, rows, layers;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    columns.include(floor_to_cell(points.x[i] * inverse));
-    rows.include(floor_to_cell(points.y[i] * inverse));
-    layers.include(floor_to_cell(points.z[i] * inverse));
-  }
-  columns_ = columns.count() + 2;
-  layers_ = layers.count() + 2;
-  sort_.clear();
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const std::uint64_t column = columns.offset(floor_to_cell(points.x[i] * inverse)) + 1;
-    const std::uint64_t row = rows.offset(floor_to_cell(points.y[i] * inverse)) + 1;
-    const std::uint64_t layer = layers.offset(floor_to_cell(points.z[i] * inverse)) + 1;
-    sort_.push((row * columns_ + column) * layers_ + layer, i);
-  }
-  sort_.sort();
-
-  keys_.clear();
+  point_cells_.build(points, voxel_size, std::numeric_limits<float>::infinity());
   voxels_.clear();
+  voxel_centers_.clear();
   voxel_of_.resize(points.size());
-  for (std::size_t i = 0; i < sort_.size();) {
-    const std::uint64_t key = sort_.key(i);
+  for (std::size_t voxel = 0; voxel < point_cells_.cells(); ++voxel) {
+    const Run run = point_cells_.run(voxel);
     Profile mean;
-    std::uint32_t count = 0;
-    for (; i < sort_.size() && sort_.key(i) == key; ++i, ++count) {
-      const std::uint32_t point = sort_.index(i);
+    for (std::uint32_t i = run.begin; i < run.end; ++i) {
+      const std::uint32_t point = point_cells_.source(i);
       const float slope_x = edges.slope_x[point], slope_y = edges.slope_y[point];
       const float down = 1.0F / std::sqrt(1.0F + slope_x * slope_x + slope_y * slope_y);
       mean.add({points.x[point], points.y[point], points.z[point],
                 points.reflectivity[point] / 255.0F, slope_x * down, slope_y * down, -down});
-      voxel_of_[point] = static_cast<std::uint32_t>(voxels_.size());
+      voxel_of_[point] = static_cast<std::uint32_t>(voxel);
     }
-    mean.average(count);
-    keys_.push_back(key);
+    mean.average(run.end - run.begin);
     voxels_.push_back(mean);
+    voxel_centers_.push_back(mean.x, mean.y, mean.z, mean.reflectivity);
   }
 }
 
-// For each of the 26 directions the neighbour's key is the voxel's plus a constant, so one walk
-// over the ascending keys with a second cursor finds them all.
 void Supervoxels::find_neighbours() {
   neighbours_.assign(voxels_.size() * kNeighbours, kNoLabel);
   std::size_t slot = 0;
   for (int direction = 0; direction < 27; ++direction) {
-    if (direction == 13) continue;
-    const std::int64_t row = direction / 9 - 1, column = direction / 3 % 3 - 1,
-                       layer = direction % 3 - 1;
-    const auto offset = static_cast<std::uint64_t>(
-        (row * static_cast<std::int64_t>(columns_) + column) * static_cast<std::int64_t>(layers_) +
-        layer);
-    std::size_t other = 0;
-    for (std::size_t voxel = 0; voxel < keys_.size(); ++voxel) {
-      const std::uint64_t key = keys_[voxel] + offset;
-      while (other < keys_.size() && keys_[other] < key) ++other;
-      if (other < keys_.size() && keys_[other] == key) {
-        neighbours_[voxel * kNeighbours + slot] = static_cast<std::uint32_t>(other);
-      }
-    }
+    if (direction == 13) continue;  // the voxel itself
+    point_cells_.for_each_pair(direction / 9 - 1, direction / 3 % 3 - 1, direction % 3 - 1,
+                               [&](std::size_t voxel, std::size_t other) {
+                                 neighbours_[voxel * kNeighbours + slot] =
+                                     static_cast<std::uint32_t>(other);
+                               });
     ++slot;
   }
 }
 
-// In each occupied cell of the seed grid the voxel nearest to the cell's centre, unless it stands
-// nearly alone: fewer voxels around it than a twentieth of a plane's (as PCL has it).
+// The voxel nearest to the centre of each occupied cell of the seed grid, unless it stands nearly
+// alone: with fewer voxels around it than a twentieth of a plane's (as PCL has it).
 void Supervoxels::place_seeds(const SupervoxelSettings& settings) {
   const float inverse = 1.0F / settings.seed_distance;
-  CellRange columns, rows, layers;
-  for (const Profile& voxel : voxels_) {
-    columns.include(floor_to_cell(voxel.x * inverse));
-    rows.include(floor_to_cell(voxel.y * inverse));
-    layers.include(floor_to_cell(voxel.z * inverse));
-  }
-  sort_.clear();
-  for (std::size_t i = 0; i < voxels_.size(); ++i) {
-    const std::uint64_t column = columns.offset(floor_to_cell(voxels_[i].x * inverse));
-    const std::uint64_t row = rows.offset(floor_to_cell(voxels_[i].y * inverse));
-    const std::uint64_t layer = layers.offset(floor_to_cell(voxels_[i].z * inverse));
-    sort_.push((row * columns.count() + column) * layers.count() + layer, i);
-  }
-  sort_.sort();
-
+  const float reach = settings.seed_distance / 2;
+  const float fill = reach / settings.voxel_size;
+  const float least = 0.05F * std::numbers::pi_v<float> * fill * fill;
+  const auto squared_distance = [&](std::uint32_t voxel, float x, float y, float z) {
+    const float dx = voxels_[voxel].x - x, dy = voxels_[voxel].y - y, dz = voxels_[voxel].z - z;
+    return dx * dx + dy * dy + dz * dz;
+  };
   owner_.assign(voxels_.size(), kNoLabel);
   distance_.assign(voxels_.size(), std::numeric_limits<float>::max());
   block_means_.clear();
-  const float reach = settings.seed_distance / 2;
-  const float fill = reach / settings.voxel_size;
-  const float least = 0.05F * 3.14159265F * fill * fill;
-  for (std::size_t begin = 0, end = 0; begin < sort_.size(); begin = end) {
-    while (end < sort_.size() && sort_.key(end) == sort_.key(begin)) ++end;
-    const Profile& any = voxels_[sort_.index(begin)];
+  seed_cells_.build(voxel_centers_, settings.seed_distance, std::numeric_limits<float>::infinity());
+  for (std::size_t cell = 0; cell < seed_cells_.cells(); ++cell) {
+    std::uint32_t seed = seed_cells_.source(seed_cells_.run(cell).begin);
     const auto middle = [&](float value) { return (std::floor(value * inverse) + 0.5F) / inverse; };
-    const float x = middle(any.x), y = middle(any.y), z = middle(any.z);
-    const auto squared_distance = [&](const Profile& voxel, float cx, float cy, float cz) {
-      return (voxel.x - cx) * (voxel.x - cx) + (voxel.y - cy) * (voxel.y - cy) +
-             (voxel.z - cz) * (voxel.z - cz);
-    };
-    std::uint32_t seed = sort_.index(begin);
-    for (std::size_t i = begin + 1; i < end; ++i) {
-      const std::uint32_t voxel = sort_.index(i);
-      if (squared_distance(voxels_[voxel], x, y, z) < squared_distance(voxels_[seed], x, y, z)) {
-        seed = voxel;
-      }
-    }
+    const float x = middle(voxels_[seed].x), y = middle(voxels_[seed].y),
+                z = middle(voxels_[seed].z);
+    float nearest = squared_distance(seed, x, y, z);
+    seed_cells_.for_each_near(x, y, z, [&](std::uint32_t voxel) {
+      const float square = squared_distance(voxel, x, y, z);
+      if (square >= nearest) return;
+      nearest = square;
+      seed = voxel;
+    });
+    if (owner_[seed] != kNoLabel) continue;  // the nearest to another cell's centre, too
     const Profile& center = voxels_[seed];
     std::size_t around = 0;
-    for (std::size_t i = begin; i < end; ++i) {
-      const float square = squared_distance(voxels_[sort_.index(i)], center.x, center.y, center.z);
-      if (square <= reach * reach) ++around;
-    }
+    seed_cells_.for_each_near(center.x, center.y, center.z, [&](std::uint32_t voxel) {
+      if (squared_distance(voxel, center.x, center.y, center.z) <= reach * reach) ++around;
+    });
     if (static_cast<float>(around) <= least) continue;
     owner_[seed] = static_cast<std::uint32_t>(block_means_.size());
-    distance_[seed] = 0;
     block_means_.push_back(center);
   }
 }

@@ -13,6 +13,9 @@ struct PointView {
   std::span<const float> x, y, z, reflectivity;
 
   std::size_t size() const { return x.size(); }
+  PointView first(std::size_t count) const {
+    return {x.first(count), y.first(count), z.first(count), reflectivity.first(count)};
+  }
 };
 
 /// A point cloud of fixed capacity, one array a coordinate. Units as in PointView.

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "scree/core/point_cloud.hpp"
-#include "scree/detect/key_sort.hpp"
+#include "scree/detect/space_cells.hpp"
 
 namespace scree {
 
@@ -29,10 +29,8 @@ private:
   std::uint32_t root(std::uint32_t cell);
   void join_cells(PointView points, float square, std::size_t a, std::size_t b);
 
-  KeySort sort_;
-  FixedVector<std::uint64_t> keys_;        // of the occupied cells, ascending
-  FixedVector<std::uint32_t> cell_begin_;  // first sorted point of each, and one past the last
-  FixedVector<std::uint32_t> parent_;      // union-find over the cells
+  SpaceCells cells_;
+  FixedVector<std::uint32_t> parent_;  // union-find over the occupied cells
   FixedVector<std::uint32_t> labels_;
   FixedVector<std::uint32_t> label_of_root_;
   std::size_t count_ = 0;

@@ -8,13 +8,9 @@
 #include "scree/core/point_cloud.hpp"
 #include "scree/detect/cell.hpp"
 #include "scree/detect/key_sort.hpp"
+#include "scree/detect/space_cells.hpp"
 
 namespace scree {
-
-/// Points [begin, end) of a sorted cloud.
-struct Run {
-  std::uint32_t begin, end;
-};
 
 /// Points sorted into square cells of the horizontal plane, row by row. The points of neighbouring
 /// cells of one row then lie side by side, so a neighbourhood is a few runs of memory; walking the

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "scree/detect/edge_points.hpp"
-#include "scree/detect/key_sort.hpp"
+#include "scree/detect/space_cells.hpp"
 
 namespace scree {
 
@@ -63,12 +63,12 @@ private:
 
   static constexpr std::size_t kNeighbours = 26;
 
-  KeySort sort_;
-  std::uint64_t columns_ = 0, layers_ = 0;  // of the voxel space, one empty voxel on every side
-  FixedVector<std::uint64_t> keys_;         // of the voxels, ascending
-  FixedVector<Profile> voxels_;             // mean of the points in each
-  FixedVector<std::uint32_t> voxel_of_;     // of each edge point
-  FixedVector<std::uint32_t> neighbours_;   // kNeighbours for each voxel, kNoLabel where none
+  SpaceCells point_cells_;                 // edge points in voxels
+  FixedVector<Profile> voxels_;            // mean of the points in each
+  PointCloud voxel_centers_;               // the same, for the seed grid
+  SpaceCells seed_cells_;                  // voxels in cells of the seed grid
+  FixedVector<std::uint32_t> voxel_of_;    // of each edge point
+  FixedVector<std::uint32_t> neighbours_;  // kNeighbours for each voxel, kNoLabel where none
   FixedVector<Profile> block_means_;
   FixedVector<std::uint32_t> block_voxels_;        // their count
   FixedVector<std::uint32_t> owner_, next_owner_;  // block of each voxel

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "scree/core/point_cloud.hpp"
-#include "scree/detect/key_sort.hpp"
+#include "scree/detect/space_cells.hpp"
 
 namespace scree {
 
@@ -15,7 +15,7 @@ struct Intake {
 /// origin, as pcl::VoxelGrid has them.
 class VoxelGrid {
 public:
-  explicit VoxelGrid(std::size_t max_points);
+  explicit VoxelGrid(std::size_t max_points) : cells_(max_points) {}
 
   /// Writes the centroids to `out`, sorted by voxel. Points that are not finite or lie `limit`
   /// metres or more from the origin on an axis are refused.
@@ -23,7 +23,7 @@ public:
   Intake filter(PointView cloud, float leaf_size, float limit, PointCloud& out);
 
 private:
-  KeySort sort_;
+  SpaceCells cells_;
 };
 
 /// Copies what VoxelGrid would take; stands in for it where it is switched off.

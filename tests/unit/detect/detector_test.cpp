@@ -1,0 +1,251 @@
+#include "scree/detect/detector.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <limits>
+#include <new>
+
+#include "detect/clouds.hpp"
+
+namespace {
+
+std::atomic<std::size_t> allocations{0};
+
+void* counted(std::size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+
+}  // namespace
+
+void* operator new(std::size_t size) {
+  return counted(size);
+}
+void* operator new[](std::size_t size) {
+  return counted(size);
+}
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+
+namespace scree {
+namespace {
+
+constexpr float kInf = std::numeric_limits<float>::infinity();
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+DetectSettings small() {
+  DetectSettings settings;
+  settings.max_points = 60'000;
+  settings.max_edge_points = 30'000;
+  settings.max_obstacles = 16;
+  settings.cluster_tolerance = 0.5;
+  return settings;
+}
+
+/// A network that takes more acute than obtuse angles for a positive obstacle, and the other way
+/// round; nothing for a cluster without height or depth.
+Network by_angles() {
+  Network network(2);
+  const auto weights = network.weights();
+  std::ranges::fill(weights, 0.0);
+  weights[acute_count] = 1;  // hidden unit 0: acute over obtuse
+  weights[obtuse_count] = -1;
+  weights[Network::kInputs + 1 + acute_count] = -1;  // hidden unit 1: the reverse
+  weights[Network::kInputs + 1 + obtuse_count] = 1;
+  for (std::size_t output = 0; output < 2; ++output) {
+    weights[network.output_row(output) + output] = 20;
+    weights[network.output_row(output) + 2] = -12;
+  }
+  return network;
+}
+
+struct Found {
+  StageCounts counts;
+  FixedVector<Obstacle> obstacles{16};
+};
+
+Found detect(PointView cloud, const DetectSettings& settings = small()) {
+  Found found;
+  Detector detector(settings, by_angles());
+  detector.detect(cloud, found.obstacles);
+  found.counts = detector.counts();
+  return found;
+}
+
+TEST(Detector, FindsTheBumpAndTheBowl) {
+  const PointCloud cloud = test::bump_and_bowl(50'000);
+  const Found found = detect(cloud);
+  ASSERT_EQ(found.obstacles.size(), 2U);
+  for (const Obstacle& obstacle : found.obstacles) {
+    const bool is_bump = obstacle.center.x() > 0;
+    EXPECT_EQ(obstacle.kind, is_bump ? ObstacleKind::positive : ObstacleKind::negative);
+    EXPECT_NEAR(obstacle.center.x(), is_bump ? test::kBumpX : test::kBowlX, 0.15);
+    EXPECT_NEAR(obstacle.center.y(), 0, 0.15);
+    EXPECT_NEAR(obstacle.extent.x(), 2 * test::kRoundRadius, 0.4);
+    EXPECT_GT(std::abs(obstacle.height), 0.15);
+    EXPECT_LT(std::abs(obstacle.height), test::kRoundHeight + 0.05);
+    EXPECT_EQ(obstacle.height > 0, is_bump);
+    EXPECT_GT(obstacle.confidence, 0.5);
+    EXPECT_GT(obstacle.points, 20U);
+  }
+  EXPECT_EQ(found.obstacles[0].id, 1);
+  EXPECT_EQ(found.obstacles[1].id, 2);
+}
+
+TEST(Detector, TheBaselineAndEverySwitchWork) {
+  const PointCloud cloud = test::bump_and_bowl(50'000);
+  for (int switches = 0; switches < 8; ++switches) {
+    DetectSettings settings = small();
+    settings.voxel_grid = (switches & 1) != 0;
+    settings.suppression = (switches & 2) != 0;
+    settings.cluster_method =
+        (switches & 4) != 0 ? ClusterMethod::euclidean : ClusterMethod::supervoxel;
+    if (settings.cluster_method == ClusterMethod::euclidean) settings.min_cluster_size = 30;
+    const Found found = detect(cloud, settings);
+    EXPECT_EQ(found.obstacles.size(), 2U) << switches;
+    EXPECT_EQ(found.counts.voxels < cloud.size(), settings.voxel_grid) << switches;
+    EXPECT_EQ(found.counts.kept < found.counts.edges, settings.suppression) << switches;
+  }
+}
+
+TEST(Detector, TwiceTheSameAndNothingAllocatedTheSecondTime) {
+  const PointCloud cloud = test::bump_and_bowl(50'000);
+  for (const auto method : {ClusterMethod::supervoxel, ClusterMethod::euclidean}) {
+    DetectSettings settings = small();
+    settings.cluster_method = method;
+    Detector detector(settings, by_angles());
+    FixedVector<Obstacle> first(16), second(16);
+    detector.detect(cloud, first);
+    const std::size_t before = allocations;
+    detector.detect(cloud, second);
+    EXPECT_EQ(allocations, before);
+    ASSERT_EQ(first.size(), second.size());
+    for (std::size_t i = 0; i < first.size(); ++i) {
+      EXPECT_EQ(first[i].center, second[i].center);
+      EXPECT_EQ(first[i].confidence, second[i].confidence);
+      EXPECT_EQ(first[i].points, second[i].points);
+    }
+  }
+}
+
+TEST(Detector, SurvivesCloudsWithNothingInThem) {
+  PointCloud cloud(60'000);
+  EXPECT_TRUE(detect(cloud).obstacles.empty());
+  cloud.push_back(1, 2, 3, 4);
+  EXPECT_TRUE(detect(cloud).obstacles.empty());
+  while (cloud.push_back(1, 2, 3, 4)) {
+  }
+  for (const bool voxel_grid : {true, false}) {
+    for (const auto method : {ClusterMethod::supervoxel, ClusterMethod::euclidean}) {
+      DetectSettings settings = small();
+      settings.max_points = settings.max_edge_points = 2000;
+      settings.voxel_grid = voxel_grid;
+      settings.cluster_method = method;
+      settings.edge_threshold = 0;
+      const Found found = detect(cloud, settings);
+      EXPECT_TRUE(found.obstacles.empty());
+      EXPECT_EQ(found.counts.dropped, cloud.size() - 2000);
+    }
+  }
+}
+
+TEST(Detector, RefusesWhatIsNotFiniteOrTooFarOut) {
+  PointCloud cloud = test::bump_and_bowl(50'000);
+  const Found clean = detect(cloud);
+  PointCloud dirty(60'000);
+  const float bad[] = {kNan, kInf, -kInf, 1e30F, -1e9F, 3.4e38F};
+  std::size_t added = 0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (i % 1000 == 0) {
+      for (const float value : bad) {
+        dirty.push_back(value, 0, 0, 0);
+        dirty.push_back(0, value, 0, 0);
+        dirty.push_back(0, 0, value, 0);
+        added += 3;
+      }
+    }
+    dirty.push_back(cloud.x[i], cloud.y[i], cloud.z[i], cloud.reflectivity[i]);
+  }
+  for (const bool voxel_grid : {true, false}) {
+    DetectSettings settings = small();
+    settings.voxel_grid = voxel_grid;
+    const Found found = detect(dirty, settings);
+    EXPECT_EQ(found.counts.refused, added);
+    EXPECT_EQ(found.obstacles.size(), clean.obstacles.size());
+  }
+}
+
+TEST(Detector, ReflectivityThatIsNotANumberDoesNotSpread) {
+  PointCloud cloud = test::bump_and_bowl(50'000);
+  for (std::size_t i = 0; i < cloud.size(); i += 3) cloud.reflectivity[i] = kNan;
+  const Found found = detect(cloud);
+  EXPECT_EQ(found.obstacles.size(), 2U);
+}
+
+TEST(Detector, WorksAtTheRimOfItsCells) {
+  // Far from the origin, up to where the cells end; beyond, every point is refused.
+  DetectSettings settings = small();
+  const PointCloud cloud = test::bump_and_bowl(50'000);
+  for (const float shift : {-400.0F, 400.0F, 5000.0F}) {
+    PointCloud moved(cloud.size());
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      moved.push_back(cloud.x[i] + shift, cloud.y[i] - shift, cloud.z[i], 0);
+    }
+    const Found found = detect(moved, settings);
+    if (std::abs(shift) < 1000) {
+      EXPECT_EQ(found.obstacles.size(), 2U) << shift;
+    } else {
+      EXPECT_EQ(found.counts.refused, cloud.size());
+    }
+  }
+}
+
+TEST(Detector, CountsWhatDoesNotFit) {
+  const PointCloud cloud = test::bump_and_bowl(60'000);
+  DetectSettings settings = small();
+  settings.max_points = 50'000;
+  EXPECT_EQ(detect(cloud, settings).counts.dropped, 10'000U);
+  settings = small();
+  settings.max_edge_points = 100;
+  const Found few = detect(cloud, settings);
+  EXPECT_EQ(few.counts.edges_dropped, few.counts.edges - 100);
+  settings = small();
+  settings.max_obstacles = 1;
+  Detector detector(settings, by_angles());
+  FixedVector<Obstacle> one(1);
+  detector.detect(cloud, one);
+  EXPECT_EQ(detector.counts().obstacles, 2U);
+  EXPECT_EQ(detector.counts().obstacles_dropped, 1U);
+}
+
+TEST(Detector, SurvivesExtremeSettings) {
+  const PointCloud cloud = test::bump_and_bowl(5'000);
+  for (const double length : {0.001, 10.0}) {
+    DetectSettings settings = small();
+    settings.leaf_size = settings.kernel_spacing = settings.kernel_radius = length;
+    settings.suppression_distance = settings.suppression_radius = length;
+    settings.voxel_size = settings.seed_distance = settings.cluster_tolerance = length;
+    settings.edge_threshold = 0;
+    for (const double bandwidth : {0.05, 100.0}) {
+      settings.kernel_bandwidth = bandwidth;
+      const Found found = detect(cloud, settings);
+      EXPECT_EQ(found.counts.input, 5'000U);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace scree
