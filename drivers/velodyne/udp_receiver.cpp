@@ -81,7 +81,7 @@ Result<UdpReceiver> UdpReceiver::open(const std::string& address, int port,
   return receiver;
 }
 
-std::optional<Datagram> UdpReceiver::receive(std::span<std::uint8_t> buffer) {
+std::optional<ReceivedDatagram> UdpReceiver::receive(std::span<std::uint8_t> buffer) {
   while (true) {
     sockaddr_in sender{};
     iovec part{buffer.data(), buffer.size()};
@@ -100,7 +100,7 @@ std::optional<Datagram> UdpReceiver::receive(std::span<std::uint8_t> buffer) {
       return std::nullopt;
     }
 
-    Datagram datagram;
+    ReceivedDatagram datagram;
     for (cmsghdr* item = CMSG_FIRSTHDR(&message); item != nullptr;
          item = CMSG_NXTHDR(&message, item)) {
       if (item->cmsg_level != SOL_SOCKET) continue;

@@ -11,6 +11,7 @@ void add_all(CLI::App& app) {
   scree::cli::add_info(app);
   scree::cli::add_decode(app);
   scree::cli::add_train(app);
+  scree::cli::add_replay(app);
   scree::cli::add_watch(app);
 }
 

@@ -22,7 +22,7 @@ struct Options {
   std::string config, url;
   bool json = false;
   int count = 0;
-  double seconds = 0;
+  double seconds = 0, every = 0;
 };
 
 std::string url_of(const Options& options) {
@@ -36,9 +36,13 @@ std::string url_of(const Options& options) {
 /// Prints messages as they come, each at once, so that a pipe behind it sees them too.
 class Watcher {
 public:
-  explicit Watcher(bool json) : json_(json) {}
+  explicit Watcher(const Options& options) : json_(options.json), pause_(options.every) {}
 
   void take_list(const lcm::ReceiveBuffer*, const std::string&, const obstacle_list_t* message) {
+    ++lists_;
+    const auto now = Clock::now();
+    if (now < next_) return;
+    next_ = now + std::chrono::duration_cast<Clock::duration>(pause_);
     from_message(*message, list_);
     text_.clear();
     if (json_) {
@@ -46,7 +50,6 @@ public:
     } else {
       append_text(list_, text_);
     }
-    ++lists_;
     print();
   }
   void take_health(const lcm::ReceiveBuffer*, const std::string&, const health_t* message) {
@@ -69,6 +72,8 @@ private:
   }
 
   bool json_;
+  std::chrono::duration<double> pause_;
+  Clock::time_point next_{};
   ObstacleList list_;
   std::string text_;
   int lists_ = 0, healths_ = 0;
@@ -99,7 +104,7 @@ void watch(const Options& options) {
   if (const auto routed = check_multicast(url); !routed) throw Failure(routed.error().message);
   lcm::LCM lcm(url);
   if (!lcm.good()) throw Failure("LCM cannot open " + url);
-  Watcher watcher(options.json);
+  Watcher watcher(options);
   lcm.subscribe(kObstaclesChannel, &Watcher::take_list, &watcher);
   lcm.subscribe(kHealthChannel, &Watcher::take_health, &watcher);
 
@@ -135,6 +140,9 @@ void add_watch(CLI::App& app) {
   command
       ->add_option("--seconds", options->seconds, "end after this time; it fails if nothing came")
       ->check(CLI::PositiveNumber);
+  command->add_option("--every", options->every, "print no more than one list in this time [0]")
+      ->type_name("SECONDS")
+      ->check(CLI::NonNegativeNumber);
   command->callback([options] { watch(*options); });
 }
 

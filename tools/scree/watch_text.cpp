@@ -43,6 +43,7 @@ void append_counts(const health_t& health, std::string& text) {
   }
   add("sweeps dropped", health.sweeps_dropped);
   add("lists failed", health.lists_failed);
+  add("lists dropped", health.lists_dropped);
   add("points dropped", health.points_dropped);
   add("edge points dropped", health.edge_points_dropped);
   add("obstacles dropped", health.obstacles_dropped);

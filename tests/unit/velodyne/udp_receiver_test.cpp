@@ -57,7 +57,7 @@ protected:
     EXPECT_TRUE(receiver) << receiver.error().message;
     return std::move(*receiver);
   }
-  std::optional<Datagram> wait(UdpReceiver& receiver) {
+  std::optional<ReceivedDatagram> wait(UdpReceiver& receiver) {
     pollfd poll_for{receiver.descriptor(), POLLIN, 0};
     EXPECT_EQ(poll(&poll_for, 1, 10000), 1);
     return receiver.receive(buffer_);

@@ -11,7 +11,7 @@
 namespace scree {
 
 /// A datagram as the kernel hands it over.
-struct Datagram {
+struct ReceivedDatagram {
   std::span<const std::uint8_t> bytes;  ///< in the buffer given to receive()
   std::int64_t arrival_ns = 0;          ///< when the kernel took it in, host time
   std::uint32_t sender = 0;             ///< IPv4 address, host byte order
@@ -37,7 +37,7 @@ public:
   static Result<UdpReceiver> open(const std::string& address, int port, const std::string& sender);
 
   /// The next datagram that waits, or nothing. Never blocks; poll descriptor() for reading.
-  std::optional<Datagram> receive(std::span<std::uint8_t> buffer);
+  std::optional<ReceivedDatagram> receive(std::span<std::uint8_t> buffer);
 
   int descriptor() const { return socket_.get(); }
   int port() const { return port_; }
