@@ -19,6 +19,7 @@ void add_info(CLI::App& app);
 void add_decode(CLI::App& app);
 void add_simulate(CLI::App& app);
 void add_train(CLI::App& app);
+void add_picture(CLI::App& app);
 void add_replay(CLI::App& app);
 void add_watch(CLI::App& app);
 

@@ -12,6 +12,7 @@ void add_all(CLI::App& app) {
   scree::cli::add_decode(app);
   scree::cli::add_simulate(app);
   scree::cli::add_train(app);
+  scree::cli::add_picture(app);
   scree::cli::add_replay(app);
   scree::cli::add_watch(app);
 }
