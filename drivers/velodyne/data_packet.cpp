@@ -58,6 +58,7 @@ unsigned azimuth_of(Bytes packet, std::size_t block) {
 struct Steps {
   std::array<int, kBlocks> step{};
   int skipped = 0;
+  int resumed_at = -1;  ///< azimuth behind the last jump
 
   /// Blocks that share their firings are `stride` apart.
   Steps(const std::array<unsigned, kBlocks>& azimuth, std::size_t stride) {
@@ -71,6 +72,7 @@ struct Steps {
         next = (to - from + kFullTurn) % kFullTurn;
         if (next > kMostStep) {
           skipped += next;
+          resumed_at = to;
           next = kNone;
         }
       }
@@ -129,10 +131,7 @@ Shots::Shots()
       reflectivity{},
       azimuth{},
       time_ns(kSingleTimes),
-      firing_order(kSingleOrder),
-      mode(ReturnMode::strongest),
-      skipped_deg(0),
-      degrees_per_block(0) {}
+      firing_order(kSingleOrder) {}
 
 PacketDecoder::PacketDecoder(LidarModel model) {
   const Lasers& lasers = lasers_of(model);
@@ -157,6 +156,7 @@ void PacketDecoder::decode(Bytes packet, Shots& shots) const {
   }
   const Steps steps(azimuth, dual ? 2 : 1);
   shots.skipped_deg = static_cast<float>(steps.skipped) / 100.0F;
+  shots.resumed_at = static_cast<float>(steps.resumed_at);
   shots.degrees_per_block = static_cast<float>(steps.step[0]) / 100.0F;
   for (std::size_t block = 0; block < kBlocks; ++block) {
     decode_block(packet.data() + block * kBlockSize, azimuth[block],

@@ -16,6 +16,8 @@ constexpr std::int64_t drift(std::int64_t elapsed_ns) {
 constexpr std::int64_t kTooEarly = 50 * kMillisecond;
 /// ... and so has one this much after it, whatever delays a busy host may have.
 constexpr std::int64_t kTooLate = kSecond;
+/// A device whose clock went back by more than packets overtake each other has started over.
+constexpr std::int64_t kBackwards = 50 * kMillisecond;
 /// Smaller steps of the host's clock: every packet is late by this much ...
 constexpr std::int64_t kLate = 20 * kMillisecond;
 /// ... for this long.
@@ -51,7 +53,8 @@ bool DeviceClock::update(std::int64_t device_ns, std::int64_t arrival_ns) {
   const std::int64_t expected = host_ns_ + device_elapsed;
   const std::int64_t residual = arrival_ns - expected;
 
-  if (residual < -kTooEarly - leak || residual > kTooLate + leak) {
+  const bool backwards = device_elapsed < -kBackwards;
+  if (backwards || residual < -kTooEarly - leak || residual > kTooLate + leak) {
     const std::int64_t device_step = wrapped(device_ns - device_ns_);
     const bool device_steady = device_step >= 0 && device_step < kSecond;
     ++(device_steady ? host_steps_ : device_restarts_);

@@ -17,7 +17,10 @@ struct Failure : std::runtime_error {
 
 void add_info(CLI::App& app);
 void add_decode(CLI::App& app);
+void add_detect(CLI::App& app);
 void add_simulate(CLI::App& app);
 void add_train(CLI::App& app);
+void add_replay(CLI::App& app);
+void add_watch(CLI::App& app);
 
 }  // namespace scree::cli

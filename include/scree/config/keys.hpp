@@ -60,7 +60,7 @@ void for_each_detect_key(std::string_view table, Detect& detect, Visit&& visit) 
   key("normal_weight", detect.normal_weight, "", 0, 1000,
       "wn of the metric D: how much a change of direction parts super-voxels");
   key("min_block_points", detect.min_block_points, "points", 1, 100000,
-      "super-voxels with fewer points are noise and go; the paper has 6");
+      "super-voxels with fewer points are noise and go; the paper has 6, on a denser cloud");
   key("cluster_tolerance", detect.cluster_tolerance, "m", 0.001, 10,
       "centres (or edge points) closer than this belong together: larger merges close obstacles, "
       "smaller splits rims");

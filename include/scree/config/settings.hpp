@@ -113,8 +113,8 @@ struct DetectSettings {
   double reflectivity_weight = 0.1;
   double spatial_weight = 0.4;
   double normal_weight = 1.0;
-  int min_block_points = 6;
-  double cluster_tolerance = 0.30;
+  int min_block_points = 4;
+  double cluster_tolerance = 0.40;
   int min_cluster_size = 3;
 
   double ground_inner = 0.15;

@@ -56,6 +56,7 @@ public:
   const EdgePoints& edges() const { return edges_; }
   const EdgePoints& kept() const { return settings_.suppression ? kept_ : edges_; }
   const Supervoxels& supervoxels() const { return supervoxels_; }
+  bool uses_supervoxels() const { return settings_.cluster_method == ClusterMethod::supervoxel; }
   const Clusters& clusters() const { return clusters_; }
 
 private:

@@ -36,14 +36,15 @@ struct Shots {
   PerShot<float> x, y, z;       ///< metres, `lidar` frame
   PerShot<float> range;         ///< metres; 0 is no return
   PerShot<float> reflectivity;  ///< 0..255
-  PerShot<float> azimuth;  ///< of that very shot; hundredths of a degree, [0, 36000)
+  PerShot<float> azimuth;       ///< of that very shot; hundredths of a degree, [0, 36000)
   std::span<const std::int32_t, kShots> time_ns;  ///< since the packet's time stamp
   /// Shots in the order of time; with dual returns the two returns of a shot follow each other.
   std::span<const std::uint16_t, kShots> firing_order;
-  ReturnMode mode;
-  /// Degrees that the sensor skipped inside the packet, where a field of view is set in the sensor.
-  float skipped_deg;
-  float degrees_per_block;  ///< how far it turned from block to block (pair to pair if dual)
+  ReturnMode mode = ReturnMode::strongest;
+  float degrees_per_block = 0;  ///< how far it turned from block to block (pair to pair if dual)
+  /// Where a field of view is set in the sensor: the degrees that it skipped inside the packet, and
+  /// the azimuth where it went on, hundredths of a degree, -1 where it skipped none.
+  float skipped_deg = 0, resumed_at = -1;
 
   Shots();
 };

@@ -1,0 +1,128 @@
+#include "scree/drivers/velodyne/lidar_stream.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace scree::velodyne {
+namespace {
+
+/// Packets this much older than the one before them were overtaken on the way; older ones come from
+/// a sensor that started over (or a capture that is played again).
+constexpr std::int64_t kMostLateNs = 50'000'000;
+
+/// After this the loss is not estimated: the sensor was off, or its clock has jumped.
+constexpr std::int64_t kLongestGapNs = 60'000'000'000;
+
+std::size_t mode_index(ReturnMode mode) {
+  return static_cast<std::size_t>(mode) - static_cast<std::size_t>(ReturnMode::strongest);
+}
+
+}  // namespace
+
+std::uint64_t LidarCounters::all_refused() const {
+  return std::accumulate(refused.begin(), refused.end(), std::uint64_t{0});
+}
+
+LidarStream::LidarStream(const LidarSettings& settings, OnSweep on_sweep, OnPacket on_packet)
+    : decoder_(settings.model),
+      model_(settings.model),
+      on_sweep_(std::move(on_sweep)),
+      on_packet_(std::move(on_packet)),
+      builder_(settings.cut_azimuth_deg, [this](Sweep& sweep) {
+        ++counters_.sweeps;
+        counters_.dropped += sweep.dropped;
+        if (on_sweep_) on_sweep_(sweep);
+      }) {}
+
+void LidarStream::take(Bytes datagram, std::int64_t arrival_ns) {
+  const Refusal refusal = check_data_packet(datagram, model_);
+  if (refusal != Refusal::none) return refuse(refusal);
+  if (product(datagram) != Product::hdl32e) return accept(datagram, arrival_ns);
+
+  const Firmware firmware = judge_.judge(timestamp_us(datagram));
+  if (firmware == Firmware::undecided) return hold(datagram, arrival_ns);
+  release(firmware == Firmware::early_vlp16);
+  if (firmware == Firmware::foreign) return refuse(Refusal::timing);
+  accept(datagram, arrival_ns);
+}
+
+void LidarStream::hold(Bytes packet, std::int64_t arrival_ns) {
+  if (held_count_ == held_.size()) {
+    std::move(held_.begin() + 1, held_.end(), held_.begin());
+    --held_count_;
+    refuse(Refusal::timing);
+  }
+  std::copy(packet.begin(), packet.end(), held_[held_count_].bytes.begin());
+  held_[held_count_].arrival_ns = arrival_ns;
+  ++held_count_;
+}
+
+void LidarStream::release(bool accept_them) {
+  for (std::size_t i = 0; i < held_count_; ++i) {
+    if (accept_them) {
+      accept(held_[i].bytes, held_[i].arrival_ns);
+    } else {
+      refuse(Refusal::timing);
+    }
+  }
+  held_count_ = 0;
+}
+
+void LidarStream::flush() {
+  release(false);
+  builder_.finish();
+}
+
+void LidarStream::accept(Bytes packet, std::int64_t arrival_ns) {
+  const std::int64_t stamp_ns = std::int64_t{timestamp_us(packet)} * 1000;
+  const std::int64_t sent_ns = stamp_ns + packet_duration_ns(return_mode(packet));
+
+  std::int64_t elapsed_ns = 0;
+  if (before_) {
+    // Within half an hour around zero; how many hours went by is the clock's business.
+    elapsed_ns = (stamp_ns - before_->device_ns % kHourNs + kHourNs) % kHourNs;
+    if (elapsed_ns >= kHourNs / 2) elapsed_ns -= kHourNs;
+    if (elapsed_ns == 0) return refuse(Refusal::duplicate);
+    if (elapsed_ns < 0 && elapsed_ns > -kMostLateNs) return refuse(Refusal::late);
+  }
+
+  const bool started_over = clock_.update(sent_ns % kHourNs, arrival_ns);
+  counters_.device_restarts = clock_.device_restarts();
+  counters_.host_steps = clock_.host_steps();
+  if (started_over || elapsed_ns < 0) {
+    builder_.finish();
+    before_.reset();
+  }
+
+  decoder_.decode(packet, shots_);
+  if (before_) count_lost(elapsed_ns);
+  const std::int64_t device_ns = before_ ? before_->device_ns + elapsed_ns : stamp_ns;
+  const std::int64_t host_ns = clock_.to_host(stamp_ns);
+
+  std::int64_t duration_ns = packet_duration_ns(shots_.mode);
+  if (shots_.skipped_deg > 0 && shots_.degrees_per_block > 0) {
+    const float blocks_skipped = shots_.skipped_deg / shots_.degrees_per_block;
+    field_of_view_ = shots_.resumed_at;
+    duration_ns += static_cast<std::int64_t>(blocks_skipped * static_cast<float>(kBlockNs));
+  }
+  before_ = Before{device_ns, duration_ns};
+
+  ++counters_.by_mode[mode_index(shots_.mode)];
+  if (on_packet_) on_packet_({counters_.accepted, host_ns, shots_});
+  ++counters_.accepted;
+  builder_.add(shots_, device_ns, host_ns - device_ns);
+}
+
+void LidarStream::count_lost(std::int64_t elapsed_ns) {
+  if (elapsed_ns > kLongestGapNs) return;
+  const std::int64_t beyond_ns = elapsed_ns - before_->duration_ns;
+  const std::int64_t packet_ns = packet_duration_ns(shots_.mode);
+  if (beyond_ns <= packet_ns / 2) return;
+  // The sensor was silent outside its field of view, and this packet is the first inside.
+  constexpr float kNear = 200;
+  if (field_of_view_ >= 0 && std::abs(shots_.azimuth[0] - field_of_view_) < kNear) return;
+  counters_.lost += static_cast<std::uint64_t>((beyond_ns + packet_ns / 2) / packet_ns);
+}
+
+}  // namespace scree::velodyne

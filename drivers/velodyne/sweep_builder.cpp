@@ -1,0 +1,82 @@
+#include "scree/drivers/velodyne/sweep_builder.hpp"
+
+#include <algorithm>
+
+namespace scree::velodyne {
+namespace {
+
+constexpr float kFull = kFullTurn;
+
+/// An azimuth wavers by hundredths of a degree from shot to shot; a step back by more than this
+/// means that the sensor turned on past the cut.
+constexpr float kStepBack = 500;
+
+/// Between two cuts lies a turn, of 50 ms at least. One sooner is that wavering, at the cut.
+constexpr std::int64_t kShortestTurnNs = 20'000'000;
+
+}  // namespace
+
+SweepBuilder::SweepBuilder(double cut_azimuth_deg, std::function<void(Sweep&)> on_sweep)
+    : cut_azimuth_(static_cast<float>(cut_azimuth_deg * 100.0)), on_sweep_(std::move(on_sweep)) {}
+
+bool SweepBuilder::passes_cut(float azimuth, std::int64_t shot_ns) {
+  const float before = behind_cut_;
+  behind_cut_ = azimuth >= cut_azimuth_ ? azimuth - cut_azimuth_ : azimuth - cut_azimuth_ + kFull;
+  if (!open_) return false;
+  if (shot_ns - begin_ns_ > kLongestSweepNs) return true;
+  if (behind_cut_ > before - kStepBack) return false;
+  if (was_cut_ && shot_ns - last_cut_ns_ < kShortestTurnNs) return false;
+  was_cut_ = true;
+  last_cut_ns_ = shot_ns;
+  return true;
+}
+
+void SweepBuilder::add(const Shots& shots, std::int64_t device_ns, std::int64_t to_host_ns) {
+  to_host_ns_ = to_host_ns;
+  const bool dual = shots.mode == ReturnMode::dual;
+  bool counted = false;
+  for (std::size_t i = 0; i < kShots; ++i) {
+    const std::size_t shot = shots.firing_order[i];
+    // A garbled time stamp may let packets overlap; within a sweep time never goes back.
+    const std::int64_t due_ns = device_ns + shots.time_ns[shot];
+    const std::int64_t shot_ns = open_ ? std::max(due_ns, last_shot_ns_) : due_ns;
+    // The second return of a shot belongs to the sweep of the first.
+    const bool second = dual && i % 2 == 1;
+    if (!second && passes_cut(shots.azimuth[shot], shot_ns)) {
+      finish();
+      counted = false;
+    }
+    if (!open_) {
+      open_ = true;
+      begin_ns_ = shot_ns;
+    }
+    last_shot_ns_ = shot_ns;
+    const float range = shots.range[shot], reflectivity = shots.reflectivity[shot];
+    if (range == 0.0F) continue;
+    if (second) {
+      const std::size_t first = shots.firing_order[i - 1];
+      if (shots.range[first] == range && shots.reflectivity[first] == reflectivity) continue;
+    }
+    if (!sweep_.time_ns.push_back(static_cast<std::int32_t>(shot_ns - begin_ns_))) {
+      ++sweep_.dropped;
+      continue;
+    }
+    sweep_.points.push_back(shots.x[shot], shots.y[shot], shots.z[shot], reflectivity);
+    last_return_ns_ = shot_ns;
+    sweep_.packets += counted ? 0 : 1;
+    counted = true;
+  }
+}
+
+void SweepBuilder::finish() {
+  if (!open_) return;
+  open_ = false;
+  const std::int64_t end_ns = sweep_.points.empty() ? last_shot_ns_ : last_return_ns_;
+  const auto length = static_cast<std::int32_t>(end_ns - begin_ns_);
+  for (std::int32_t& time : sweep_.time_ns) time -= length;
+  sweep_.end_ns = end_ns + to_host_ns_;
+  on_sweep_(sweep_);
+  sweep_.clear();
+}
+
+}  // namespace scree::velodyne

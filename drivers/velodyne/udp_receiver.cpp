@@ -1,0 +1,137 @@
+#include "scree/drivers/velodyne/udp_receiver.hpp"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <time.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace scree {
+namespace {
+
+// Two seconds of a VLP-16 in dual-return mode (1508 packets a second, each 2304 bytes in the
+// kernel).
+constexpr int kWantedBuffer = 8 << 20;
+
+std::int64_t nanoseconds(const timespec& time) {
+  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
+}
+
+std::string reason_of(int error, const std::string& address, int port) {
+  const std::string where = address + ":" + std::to_string(port);
+  switch (error) {
+    case EADDRINUSE:
+      return "UDP port " + std::to_string(port) +
+             " is in use by another program (another screed? `ss -ulnp` lists them)";
+    case EADDRNOTAVAIL:
+      return "cannot listen on " + where + ": no interface of this computer has that address";
+    case EACCES:
+      return "cannot listen on " + where + ": ports below 1024 need the right CAP_NET_BIND_SERVICE";
+    default:
+      return "cannot listen on " + where + ": " + std::strerror(error);
+  }
+}
+
+bool enable(int socket, int option) {
+  const int on = 1;
+  return setsockopt(socket, SOL_SOCKET, option, &on, sizeof on) == 0;
+}
+
+// Only root may go beyond net.core.rmem_max; anyone else gets that much.
+int grow_buffer(int socket) {
+  if (setsockopt(socket, SOL_SOCKET, SO_RCVBUFFORCE, &kWantedBuffer, sizeof kWantedBuffer) != 0) {
+    setsockopt(socket, SOL_SOCKET, SO_RCVBUF, &kWantedBuffer, sizeof kWantedBuffer);
+  }
+  int bytes = 0;
+  socklen_t size = sizeof bytes;
+  getsockopt(socket, SOL_SOCKET, SO_RCVBUF, &bytes, &size);
+  return bytes;
+}
+
+}  // namespace
+
+Result<UdpReceiver> UdpReceiver::open(const std::string& address, int port,
+                                      const std::string& sender) {
+  sockaddr_in local{};
+  local.sin_family = AF_INET;
+  local.sin_port = htons(static_cast<std::uint16_t>(port));
+  if (inet_pton(AF_INET, address.c_str(), &local.sin_addr) != 1) {
+    return fail("\"" + address + "\" is not an IPv4 address to listen on, as 0.0.0.0 is");
+  }
+  in_addr accepted{};
+  if (!sender.empty() && inet_pton(AF_INET, sender.c_str(), &accepted) != 1) {
+    return fail("\"" + sender + "\" is not the IPv4 address of a sender, as 192.168.1.201 is");
+  }
+
+  UdpReceiver receiver;
+  receiver.accepted_sender_ = ntohl(accepted.s_addr);
+  receiver.socket_ = Descriptor(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  const int descriptor = receiver.socket_.get();
+  // SO_REUSEADDR stays off: a second daemon on the port would silently take the datagrams.
+  if (descriptor < 0 || !enable(descriptor, SO_TIMESTAMPNS) || !enable(descriptor, SO_RXQ_OVFL) ||
+      bind(descriptor, reinterpret_cast<const sockaddr*>(&local), sizeof local) != 0) {
+    return fail(reason_of(errno, address, port));
+  }
+  socklen_t size = sizeof local;
+  getsockname(descriptor, reinterpret_cast<sockaddr*>(&local), &size);
+  receiver.port_ = ntohs(local.sin_port);
+  receiver.buffer_bytes_ = grow_buffer(descriptor);
+  return receiver;
+}
+
+std::optional<ReceivedDatagram> UdpReceiver::receive(std::span<std::uint8_t> buffer) {
+  while (true) {
+    sockaddr_in sender{};
+    iovec part{buffer.data(), buffer.size()};
+    alignas(cmsghdr) std::uint8_t control[128];
+    msghdr message{};
+    message.msg_name = &sender;
+    message.msg_namelen = sizeof sender;
+    message.msg_iov = &part;
+    message.msg_iovlen = 1;
+    message.msg_control = control;
+    message.msg_controllen = sizeof control;
+    const ssize_t size = recvmsg(socket_.get(), &message, 0);
+    if (size < 0 && errno == EINTR) continue;
+    if (size < 0) {
+      if (errno != EAGAIN && errno != EWOULDBLOCK) ++counts_.errors;
+      return std::nullopt;
+    }
+
+    ReceivedDatagram datagram;
+    for (cmsghdr* item = CMSG_FIRSTHDR(&message); item != nullptr;
+         item = CMSG_NXTHDR(&message, item)) {
+      if (item->cmsg_level != SOL_SOCKET) continue;
+      if (item->cmsg_type == SCM_TIMESTAMPNS) {
+        timespec arrival;
+        std::memcpy(&arrival, CMSG_DATA(item), sizeof arrival);
+        datagram.arrival_ns = nanoseconds(arrival);
+      } else if (item->cmsg_type == SO_RXQ_OVFL) {
+        std::uint32_t drops;
+        std::memcpy(&drops, CMSG_DATA(item), sizeof drops);
+        counts_.kernel_drops += drops - last_drops_;
+        last_drops_ = drops;
+      }
+    }
+    datagram.sender = ntohl(sender.sin_addr.s_addr);
+    if (accepted_sender_ != 0 && datagram.sender != accepted_sender_) {
+      ++counts_.foreign;
+      continue;
+    }
+    datagram.bytes = buffer.first(static_cast<std::size_t>(size));
+    datagram.truncated = (message.msg_flags & MSG_TRUNC) != 0;
+    ++counts_.received;
+    counts_.truncated += datagram.truncated ? 1 : 0;
+    return datagram;
+  }
+}
+
+std::string ipv4_text(std::uint32_t address) {
+  const in_addr network{htonl(address)};
+  char text[INET_ADDRSTRLEN];
+  return inet_ntop(AF_INET, &network, text, sizeof text);
+}
+
+}  // namespace scree

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include "scree/config/settings.hpp"
+#include "scree/core/sweep.hpp"
+#include "scree/drivers/velodyne/data_packet.hpp"
+#include "scree/drivers/velodyne/firmware.hpp"
+#include "scree/drivers/velodyne/sweep_builder.hpp"
+#include "scree/sync/device_clock.hpp"
+
+namespace scree::velodyne {
+
+struct LidarCounters {
+  std::uint64_t accepted = 0;                         ///< packets decoded
+  std::array<std::uint64_t, kRefusals> refused{};     ///< by Refusal; [none] stays 0
+  std::array<std::uint64_t, 3> by_mode{};             ///< accepted: strongest, last, dual
+  std::uint64_t lost = 0;                             ///< packets missing between accepted ones
+  std::uint64_t sweeps = 0;                           ///< handed out
+  std::uint64_t dropped = 0;                          ///< points beyond a sweep's capacity
+  std::uint64_t device_restarts = 0, host_steps = 0;  ///< see DeviceClock
+
+  std::uint64_t all_refused() const;
+};
+
+/// A decoded packet on the host's clock.
+struct DecodedPacket {
+  std::uint64_t index;   ///< counts accepted packets from 0
+  std::int64_t time_ns;  ///< host time of the first shot; add Shots::time_ns
+  const Shots& shots;
+};
+
+/// All there is between the datagrams of the data port and sweeps on the host's clock; the daemon
+/// and the tools use it alike. Allocates when it is made and never again. Deterministic.
+///
+/// A packet's device time is that of its first shot; it leaves the sensor after the last one.
+/// Points of a sweep have the spacing of the device's clock, and the sweep as a whole is laid on
+/// the host's clock when it ends.
+class LidarStream {
+public:
+  using OnSweep = std::function<void(Sweep&)>;
+  using OnPacket = std::function<void(const DecodedPacket&)>;
+
+  /// `on_sweep` may swap the sweep with another one of kSweepCapacity. Ranges are not limited and
+  /// the mount is not applied here.
+  LidarStream(const LidarSettings& settings, OnSweep on_sweep, OnPacket on_packet = {});
+  LidarStream(const LidarStream&) = delete;
+  LidarStream& operator=(const LidarStream&) = delete;
+
+  /// Takes a datagram that arrived on the data port. Any bytes are safe.
+  void take(Bytes datagram, std::int64_t arrival_ns);
+  /// At the end of a capture: hands out the last, partial sweep.
+  void flush();
+
+  const LidarCounters& counters() const { return counters_; }
+  /// Whether product byte 0x21 was seen and what it turned out to be; see sentence().
+  Firmware firmware() const { return judge_.firmware(); }
+  /// Host time minus device time, within half an hour around zero.
+  std::int64_t clock_offset_ns() const { return clock_.offset_ns(); }
+
+private:
+  struct Held {
+    std::array<std::uint8_t, kDataPacketSize> bytes;
+    std::int64_t arrival_ns;
+  };
+  /// What the next packet is compared with.
+  struct Before {
+    std::int64_t device_ns;    ///< does not wrap
+    std::int64_t duration_ns;  ///< until the next packet's time stamp, when none is lost
+  };
+
+  void refuse(Refusal reason) { ++counters_.refused[static_cast<std::size_t>(reason)]; }
+  void hold(Bytes packet, std::int64_t arrival_ns);
+  void release(bool accept_them);
+  void accept(Bytes packet, std::int64_t arrival_ns);
+  void count_lost(std::int64_t elapsed_ns);
+
+  PacketDecoder decoder_;
+  LidarModel model_;
+  OnSweep on_sweep_;
+  OnPacket on_packet_;
+  SweepBuilder builder_;
+  DeviceClock clock_{kHourNs};
+  FirmwareJudge judge_;
+  std::array<Held, 32> held_{};  ///< packets with product byte 0x21 until it is decided
+  std::size_t held_count_ = 0;
+  std::optional<Before> before_;
+  float field_of_view_ =
+      -1;  ///< azimuth where one set in the sensor begins; hundredths of a degree
+  Shots shots_;
+  LidarCounters counters_;
+};
+
+}  // namespace scree::velodyne

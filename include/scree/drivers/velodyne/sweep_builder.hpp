@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "scree/core/sweep.hpp"
+#include "scree/drivers/velodyne/data_packet.hpp"
+
+namespace scree::velodyne {
+
+/// A sweep of a sensor that does not turn ends after this: a little over a turn at 300 rpm, the
+/// slowest that can be set.
+inline constexpr std::int64_t kLongestSweepNs = 220'000'000;
+
+/// Points of the largest sweep: every shot of that time with two returns.
+inline constexpr std::size_t kSweepCapacity =
+    static_cast<std::size_t>(kLongestSweepNs / kFiringNs + 1) * kLasers * 2;
+
+/// Gathers the returns of shots into sweeps. A sweep ends where a shot's azimuth passes the cut, or
+/// after kLongestSweepNs. The first sweep is the rest of the turn that was under way.
+///
+/// With dual returns a shot that has one echo reports it twice; the second of two equal returns is
+/// left out, so that an echo is one point whatever the mode.
+class SweepBuilder {
+public:
+  /// `on_sweep` may swap the sweep with another one of kSweepCapacity.
+  SweepBuilder(double cut_azimuth_deg, std::function<void(Sweep&)> on_sweep);
+
+  /// Takes the shots of the next packet, whose time stamp is `device_ns` on a clock that does not
+  /// wrap; `to_host_ns` is what brings device times to the host's clock.
+  void add(const Shots& shots, std::int64_t device_ns, std::int64_t to_host_ns);
+
+  /// Hands out what there is of the sweep under way, if anything.
+  void finish();
+
+private:
+  bool passes_cut(float azimuth, std::int64_t shot_ns);
+
+  float cut_azimuth_;  ///< hundredths of a degree
+  std::function<void(Sweep&)> on_sweep_;
+  Sweep sweep_{kSweepCapacity};  ///< its times count from begin_ns_ until it is finished
+  std::int64_t begin_ns_ = 0;    ///< device time of its first shot
+  std::int64_t last_shot_ns_ = 0, last_return_ns_ = 0, last_cut_ns_ = 0;
+  std::int64_t to_host_ns_ = 0;
+  float behind_cut_ = 0;  ///< how far the last shot lay behind the cut; hundredths of a degree
+  bool open_ = false, was_cut_ = false;
+};
+
+}  // namespace scree::velodyne

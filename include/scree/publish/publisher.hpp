@@ -1,0 +1,44 @@
+#pragma once
+
+#include <lcm/lcm.h>
+
+#include <memory>
+#include <scree/health_t.hpp>
+#include <scree/obstacle_list_t.hpp>
+#include <string>
+#include <vector>
+
+#include "scree/core/obstacle.hpp"
+#include "scree/core/result.hpp"
+
+namespace scree {
+
+inline constexpr const char* kObstaclesChannel = "SCREE_OBSTACLES";
+inline constexpr const char* kHealthChannel = "SCREE_HEALTH";
+
+/// Sends obstacle lists and health on LCM. One thread may use it. Its buffers are sized when it is
+/// made: sending a list of up to max_obstacles allocates nothing.
+class Publisher {
+public:
+  /// Opens an LCM provider; the error says what to do where multicast has no route.
+  static Result<Publisher> open(const std::string& lcm_url, std::size_t max_obstacles);
+
+  /// False when LCM did not take the message.
+  bool publish(const ObstacleList& list);
+  bool publish(const health_t& health);
+
+private:
+  struct Destroy {
+    void operator()(lcm_t* lcm) const { lcm_destroy(lcm); }
+  };
+
+  Publisher(lcm_t* lcm, std::size_t max_obstacles);
+  template <class Message>
+  bool send(const char* channel, const Message& message);
+
+  std::unique_ptr<lcm_t, Destroy> lcm_;
+  obstacle_list_t list_{};
+  std::vector<std::uint8_t> encoded_;
+};
+
+}  // namespace scree

@@ -1,0 +1,64 @@
+#include "scree/publish/multicast.hpp"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <string_view>
+
+namespace scree {
+namespace {
+
+constexpr std::string_view kProvider = "udpm://";
+
+Result<sockaddr_in> group_of(const std::string& url) {
+  const std::string_view rest = std::string_view(url).substr(kProvider.size());
+  const std::string network(rest.substr(0, rest.find('?')));
+  const std::size_t colon = network.find(':');
+  sockaddr_in group{};
+  group.sin_family = AF_INET;
+  const std::string address = network.substr(0, colon);
+  std::uint16_t port = 0;
+  if (colon != std::string::npos) {
+    const char* end = network.data() + network.size();
+    const auto read = std::from_chars(network.data() + colon + 1, end, port);
+    if (read.ec != std::errc{} || read.ptr != end) port = 0;
+  }
+  if (port == 0 || inet_pton(AF_INET, address.c_str(), &group.sin_addr) != 1 ||
+      !IN_MULTICAST(ntohl(group.sin_addr.s_addr))) {
+    return fail("the LCM url " + url +
+                " must look like udpm://239.255.76.67:7667?ttl=0, with a multicast address "
+                "(224.0.0.0 to 239.255.255.255) and a port");
+  }
+  group.sin_port = htons(port);
+  return group;
+}
+
+}  // namespace
+
+Result<void> check_multicast(const std::string& lcm_url) {
+  if (!lcm_url.starts_with(kProvider)) return {};
+  const auto group = group_of(lcm_url);
+  if (!group) return tl::make_unexpected(group.error());
+
+  const int probe = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (probe < 0) return fail(std::string("cannot open a UDP socket: ") + std::strerror(errno));
+  ip_mreq membership{};
+  membership.imr_multiaddr = group->sin_addr;
+  // Neither call sends anything: the kernel only looks for a route.
+  const bool routed =
+      connect(probe, reinterpret_cast<const sockaddr*>(&*group), sizeof *group) == 0 &&
+      setsockopt(probe, IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof membership) == 0;
+  const int reason = errno;
+  close(probe);
+  if (routed) return {};
+  return fail("no route to the multicast group of " + lcm_url + " (" + std::strerror(reason) +
+              "); to use LCM on this computer alone, run as root: ip link set lo multicast on; "
+              "ip route add 224.0.0.0/4 dev lo");
+}
+
+}  // namespace scree

@@ -1,0 +1,153 @@
+#include "app/health_watch.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace scree {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+constexpr std::int64_t kMillisecond = 1'000'000;
+
+class HealthWatchTest : public ::testing::Test {
+protected:
+  HealthWatchTest() : watch_(settings(), now_) {}
+
+  static LidarSettings settings() {
+    LidarSettings settings;
+    settings.sender = "192.168.1.201";
+    return settings;
+  }
+  /// Lets time pass while the lidar does what `status_` says.
+  std::string pass(std::int64_t milliseconds) {
+    now_ += milliseconds * kMillisecond;
+    return update();
+  }
+  /// The same with packets and lists coming all the time.
+  std::string drive(std::int64_t milliseconds) {
+    now_ += milliseconds * kMillisecond;
+    datagram();
+    packet();
+    last_list_ = now_ - 50 * kMillisecond;
+    return update();
+  }
+  void datagram() {
+    status_.sender = 0xC0A801C9;
+    status_.datagram_size = 1206;
+    ++status_.data_port.received;
+    status_.last_datagram_ns = now_;
+  }
+  void packet() {
+    ++status_.packets;
+    status_.last_packet_ns = now_;
+    status_.sweeps = 1;
+  }
+  std::string update() {
+    changed_ = watch_.update(now_, status_, last_list_, health_);
+    std::string log;
+    for (const auto& line : watch_.log()) log += (line.is_warning ? "W " : "I ") + line.text + '\n';
+    return log;
+  }
+
+  std::int64_t now_ = 5'000 * kMillisecond, last_list_ = 0;
+  LidarStatus status_;
+  health_t health_{};
+  HealthWatch watch_;
+  bool changed_ = false;
+};
+
+TEST_F(HealthWatchTest, WithoutASenderItIsBlindAndSaysSoOnceAfterASecond) {
+  EXPECT_THAT(pass(900), IsEmpty());
+  EXPECT_EQ(health_.state, health_t::BLIND);
+  EXPECT_EQ(health_.lidar.state, lidar_health_t::NEVER_SEEN);
+  EXPECT_THAT(health_.reason, HasSubstr("nothing has come on UDP port 2368"));
+  EXPECT_THAT(pass(100),
+              AllOf(HasSubstr("W nothing has come on UDP port 2368"), HasSubstr("cable")));
+  EXPECT_THAT(pass(5000), IsEmpty());
+}
+
+TEST_F(HealthWatchTest, OnlyOtherSendersIsSaid) {
+  status_.data_port.foreign = 12;
+  EXPECT_THAT(pass(100), HasSubstr("not from 192.168.1.201 (12 more"));
+  EXPECT_THAT(health_.reason, HasSubstr("come from others than 192.168.1.201"));
+}
+
+TEST_F(HealthWatchTest, SeesOnceListsCome) {
+  now_ += 10 * kMillisecond;
+  datagram();
+  packet();
+  status_.sweeps = 0;
+  EXPECT_THAT(update(), AllOf(HasSubstr("from 192.168.1.201 and has 1206 bytes"),
+                              HasSubstr("vlp16, strongest return")));
+  EXPECT_TRUE(changed_);
+  EXPECT_EQ(health_.lidar.state, lidar_health_t::OK);
+  EXPECT_EQ(health_.state, health_t::BLIND);
+  EXPECT_THAT(health_.reason, HasSubstr("not made a whole turn"));
+  EXPECT_THAT(drive(50), HasSubstr("I sees"));
+  EXPECT_TRUE(changed_);
+  EXPECT_EQ(health_.state, health_t::OK);
+  EXPECT_EQ(health_.reason, "");
+  EXPECT_THAT(drive(50), IsEmpty());
+  EXPECT_FALSE(changed_);
+}
+
+TEST_F(HealthWatchTest, SilenceIsBlindWithin300MsAndSaidInTheLogAfterASecond) {
+  drive(50);
+  const std::int64_t last = now_;
+  std::string log;
+  while (health_.state == health_t::OK) log = pass(50);
+  EXPECT_LE(now_ - last, 300 * kMillisecond);
+  EXPECT_TRUE(changed_);
+  EXPECT_EQ(health_.lidar.state, lidar_health_t::SILENT);
+  EXPECT_THAT(log, HasSubstr("W blind: no packets on UDP port 2368"));
+  EXPECT_THAT(pass(750), HasSubstr("W no packets on UDP port 2368 for 1 s"));
+  EXPECT_THAT(pass(2000), IsEmpty());
+  EXPECT_THAT(drive(50), AllOf(HasSubstr("again after 3.0 s"), HasSubstr("I sees")));
+  EXPECT_EQ(health_.state, health_t::OK);
+}
+
+TEST_F(HealthWatchTest, DatagramsThatAreNotPacketsAreWrongData) {
+  datagram();
+  status_.refused[static_cast<std::size_t>(velodyne::Refusal::size)] = 3;
+  status_.last_refusal = velodyne::Refusal::size;
+  EXPECT_THAT(pass(10), HasSubstr("refused: not 1206 bytes long (3 more"));
+  EXPECT_EQ(health_.lidar.state, lidar_health_t::WRONG_DATA);
+  EXPECT_THAT(health_.reason, HasSubstr("not 1206 bytes long"));
+  EXPECT_THAT(health_.lidar.refused_reason, Contains("size"));
+  EXPECT_THAT(health_.lidar.refused_reason, Not(Contains("none")));
+  EXPECT_EQ(health_.lidar.reasons, static_cast<int>(health_.lidar.refused.size()));
+}
+
+TEST_F(HealthWatchTest, RefusalsAreSaidAtMostEveryTenSeconds) {
+  auto& refused = status_.refused[static_cast<std::size_t>(velodyne::Refusal::flags)];
+  drive(50);
+  refused = 1;
+  EXPECT_THAT(drive(50), HasSubstr("FF EE (1 more, 1 since the start)"));
+  refused = 900;
+  EXPECT_THAT(drive(9000), IsEmpty());
+  EXPECT_THAT(drive(2000), HasSubstr("FF EE (899 more, 900 since the start)"));
+}
+
+TEST_F(HealthWatchTest, WithoutListsItIsBlindThoughPacketsCome) {
+  drive(50);
+  for (int i = 0; i < 12; ++i) {
+    now_ += 50 * kMillisecond;
+    datagram();
+    packet();
+    update();
+  }
+  EXPECT_EQ(health_.state, health_t::BLIND);
+  EXPECT_EQ(health_.lidar.state, lidar_health_t::OK);
+  EXPECT_THAT(health_.reason, HasSubstr("no sweep has got through the detector"));
+  status_.is_last_sweep_empty = true;
+  pass(10);
+  EXPECT_THAT(health_.reason, HasSubstr("covered"));
+}
+
+}  // namespace
+}  // namespace scree

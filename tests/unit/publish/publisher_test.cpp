@@ -1,0 +1,126 @@
+#include "scree/publish/publisher.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <lcm/lcm-cpp.hpp>
+
+#include "scree/publish/jsonl.hpp"
+#include "scree/publish/messages.hpp"
+#include "scree/publish/multicast.hpp"
+#include "unit/free_port.hpp"
+
+namespace scree {
+namespace {
+
+using ::testing::HasSubstr;
+
+ObstacleList list_of(std::size_t size) {
+  ObstacleList list(size);
+  list.stamp_ns = 1598601600123456789;
+  list.pose.translation = {1, 2, 3};
+  list.pose.rotation = from_roll_pitch_yaw(0.1, 0.2, 0.3);
+  for (std::size_t i = 0; i < size; ++i) {
+    Obstacle obstacle;
+    obstacle.id = static_cast<std::int64_t>(i) + 5;
+    obstacle.kind = i % 2 == 0 ? ObstacleKind::positive : ObstacleKind::negative;
+    obstacle.confidence = 0.7F;
+    obstacle.center = {1.0 / 3, 2, static_cast<double>(i)};
+    obstacle.extent = {0.1, 0.2, 0.3};
+    obstacle.yaw = -0.4;
+    obstacle.height = 0.5;
+    obstacle.points = 12;
+    list.obstacles.push_back(obstacle);
+  }
+  return list;
+}
+
+std::string json(const ObstacleList& list) {
+  std::string text;
+  append_json_line(list, text);
+  return text;
+}
+
+/// Receives one message of a type, or fails after ten seconds.
+template <class Message>
+class Receiver {
+public:
+  Receiver(const std::string& url, const std::string& channel) : lcm_(url) {
+    lcm_.subscribe(channel, &Receiver::take, this);
+  }
+  Message next() {
+    arrived_ = false;
+    while (!arrived_ && lcm_.handleTimeout(10000) > 0) {
+    }
+    EXPECT_TRUE(arrived_);
+    return message_;
+  }
+
+private:
+  void take(const lcm::ReceiveBuffer*, const std::string&, const Message* message) {
+    message_ = *message;
+    arrived_ = true;
+  }
+  lcm::LCM lcm_;
+  Message message_{};
+  bool arrived_ = false;
+};
+
+TEST(Publisher, ListsComeThroughUnchanged) {
+  const std::string url = free_lcm_url();
+  Receiver<obstacle_list_t> receiver(url, kObstaclesChannel);
+  auto publisher = Publisher::open(url, 1000);
+  ASSERT_TRUE(publisher) << publisher.error().message;
+  // 1000 obstacles do not fit in one datagram: LCM sends them in fragments.
+  for (const std::size_t size : {std::size_t{2}, std::size_t{0}, std::size_t{1000}}) {
+    const ObstacleList sent = list_of(size);
+    ASSERT_TRUE(publisher->publish(sent));
+    ObstacleList received;
+    from_message(receiver.next(), received);
+    EXPECT_EQ(json(received), json(sent));
+  }
+}
+
+TEST(Publisher, HealthComesThrough) {
+  const std::string url = free_lcm_url();
+  Receiver<health_t> receiver(url, kHealthChannel);
+  auto publisher = Publisher::open(url, 1);
+  ASSERT_TRUE(publisher) << publisher.error().message;
+  health_t health{};
+  health.state = health_t::BLIND;
+  health.reason = std::string(500, 'x');
+  health.lidar.refused_reason = {"wrong size", "wrong flag"};
+  health.lidar.refused = {3, 4};
+  health.lidar.reasons = 2;
+  health.detector_time.p99_ms = 12.5;
+  ASSERT_TRUE(publisher->publish(health));
+  const health_t received = receiver.next();
+  EXPECT_EQ(received.reason, health.reason);
+  EXPECT_EQ(received.lidar.refused_reason, health.lidar.refused_reason);
+  EXPECT_EQ(received.lidar.refused, health.lidar.refused);
+  EXPECT_EQ(received.detector_time.p99_ms, 12.5);
+}
+
+TEST(Multicast, OtherProvidersNeedNoRoute) {
+  EXPECT_TRUE(check_multicast("memq://"));
+}
+
+TEST(Multicast, AUrlWithoutGroupOrPortIsExplained) {
+  for (const char* url : {"udpm://", "udpm://239.255.76.67", "udpm://127.0.0.1:7667",
+                          "udpm://239.255.76.67:0", "udpm://239.255.76.67:7x", "udpm://robot:1"}) {
+    const auto routed = check_multicast(url);
+    ASSERT_FALSE(routed) << url;
+    EXPECT_THAT(routed.error().message, HasSubstr(url));
+    EXPECT_THAT(routed.error().message, HasSubstr("239.255.76.67:7667"));
+  }
+}
+
+TEST(Publisher, AnUnknownProviderIsRefused) {
+  const auto publisher = Publisher::open("pigeon://coop", 1);
+  ASSERT_FALSE(publisher);
+  EXPECT_THAT(publisher.error().message, HasSubstr("pigeon://coop"));
+}
+
+}  // namespace
+}  // namespace scree

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <scree/health_t.hpp>
+#include <string>
+
+#include "scree/core/obstacle.hpp"
+
+namespace scree::cli {
+
+/// Appends a list for people: a line with its time and one line for each obstacle.
+void append_text(const ObstacleList& list, std::string& text);
+/// Appends health for people: one line, and one more where datagrams were refused or things
+/// dropped.
+void append_text(const health_t& health, std::string& text);
+
+}  // namespace scree::cli
