@@ -2,6 +2,9 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
+#include <array>
+
 namespace scree {
 namespace {
 
@@ -10,20 +13,20 @@ constexpr std::int64_t kGrowthPause = 10 * kSecond;
 constexpr const char* kAdvice =
     "check the sensor's power and cable, the destination address on its web page, and the firewall";
 
-const char* text_of(velodyne::ReturnMode mode) {
-  switch (mode) {
-    case velodyne::ReturnMode::strongest:
-      return "strongest return";
-    case velodyne::ReturnMode::last:
-      return "last return";
-    case velodyne::ReturnMode::dual:
-      return "dual return";
+/// The modes in which packets came, for the log.
+std::string modes_of(const velodyne::LidarCounters& counters) {
+  constexpr std::array kModes = {"strongest return", "last return", "dual return"};
+  std::string modes;
+  for (std::size_t i = 0; i < kModes.size(); ++i) {
+    if (counters.by_mode[i] != 0) modes += (modes.empty() ? "" : ", ") + std::string(kModes[i]);
   }
-  return "unknown return mode";
+  return modes;
 }
 
-std::string_view reason_of(velodyne::Refusal refusal) {
-  return velodyne::kRefusalReasons[static_cast<std::size_t>(refusal)];
+/// Why most datagrams were refused.
+std::string_view main_reason(const velodyne::LidarCounters& counters) {
+  const auto most = std::max_element(counters.refused.begin(), counters.refused.end());
+  return velodyne::kRefusalReasons[static_cast<std::size_t>(most - counters.refused.begin())];
 }
 
 std::int64_t signed_count(std::uint64_t count) {
@@ -32,9 +35,9 @@ std::int64_t signed_count(std::uint64_t count) {
 
 void fill(const LidarStatus& lidar, lidar_health_t& health) {
   health.sender = lidar.sender == 0 ? "" : ipv4_text(lidar.sender);
-  health.packets = signed_count(lidar.packets);
+  health.packets = signed_count(lidar.lidar.accepted);
   health.position_packets = signed_count(lidar.position_packets);
-  health.lost_packets = signed_count(lidar.lost_packets);
+  health.lost_packets = signed_count(lidar.lidar.lost);
   health.kernel_drops = signed_count(lidar.data_port.kernel_drops);
   health.refused_reason.clear();
   health.refused.clear();
@@ -43,7 +46,7 @@ void fill(const LidarStatus& lidar, lidar_health_t& health) {
     health.refused.push_back(signed_count(count));
   };
   for (std::size_t i = 1; i < velodyne::kRefusals; ++i) {
-    add(velodyne::kRefusalNames[i], lidar.refused[i]);
+    add(velodyne::kRefusalNames[i], lidar.lidar.refused[i]);
   }
   add("sender", lidar.data_port.foreign);
   health.reasons = static_cast<std::int32_t>(health.refused.size());
@@ -73,7 +76,7 @@ bool HealthWatch::update(std::int64_t now_ns, const LidarStatus& lidar, std::int
   if (health.state != old_state)
     say(!sees, sees ? "sees: obstacle lists go out" : "blind: " + health.reason);
   for (std::size_t i = 1; i < velodyne::kRefusals; ++i) {
-    say_growth(now_ns, refused_[i], lidar.refused[i],
+    say_growth(now_ns, refused_[i], lidar.lidar.refused[i],
                fmt::format("datagrams on {} refused: {}", port_, velodyne::kRefusalReasons[i]));
   }
   say_growth(now_ns, foreign_, lidar.data_port.foreign,
@@ -102,12 +105,12 @@ std::string HealthWatch::blind_reason(const LidarStatus& lidar, std::int8_t stat
       return fmt::format("no packets on {}", port_);
     case lidar_health_t::WRONG_DATA:
       return fmt::format("datagrams on {} are not packets of a {}: {}", port_,
-                         name_of(settings_.model), reason_of(lidar.last_refusal));
+                         name_of(settings_.model), main_reason(lidar.lidar));
     default:
       break;
   }
   if (lidar.is_last_sweep_empty) return "the lidar's last turn has no return: is it covered?";
-  if (lidar.sweeps == 0) return "the lidar has not made a whole turn yet";
+  if (lidar.lidar.sweeps == 0) return "the lidar has not made a whole turn yet";
   return "packets come, but no sweep has got through the detector";
 }
 
@@ -118,14 +121,13 @@ void HealthWatch::say_first_packets(const LidarStatus& lidar) {
     said_datagram_ = true;
   }
   if (!said_packet_ && lidar.last_packet_ns != 0) {
-    say(false,
-        fmt::format("packets are understood: {}, {}{}", name_of(settings_.model),
-                    text_of(lidar.return_mode),
-                    lidar.is_early_firmware
-                        ? "; the product byte is 0x21 and the packet rate a VLP-16's, so it is "
-                          "a VLP-16 with early firmware"
-                        : ""));
+    say(false, fmt::format("packets are understood: {}, {}", name_of(settings_.model),
+                           modes_of(lidar.lidar)));
     said_packet_ = true;
+  }
+  if (lidar.firmware != said_firmware_) {
+    say(lidar.firmware == velodyne::Firmware::foreign, std::string(sentence(lidar.firmware)));
+    said_firmware_ = lidar.firmware;
   }
 }
 
@@ -138,8 +140,10 @@ void HealthWatch::say_silence(std::int64_t now_ns, const LidarStatus& lidar) {
     said_silence_ = true;
     silent_since_ = last;
   } else if (said_silence_ && now_ns - last < kSilence) {
-    say(false, fmt::format("packets on {} again after {:.1f} s", port_,
-                           static_cast<double>(last - silent_since_) / kSecond));
+    if (silent_since_ != start_ns_) {  // else they are the first, which is said already
+      say(false, fmt::format("packets on {} again after {:.1f} s", port_,
+                             static_cast<double>(last - silent_since_) / kSecond));
+    }
     said_silence_ = false;
   }
 }

@@ -59,6 +59,7 @@ private:
   std::string port_;  // "UDP port 2368"
   std::int64_t start_ns_;
   std::vector<Line> log_;
+  velodyne::Firmware said_firmware_ = velodyne::Firmware::undecided;
   bool said_datagram_ = false, said_packet_ = false, said_silence_ = false;
   std::int64_t silent_since_ = 0;
   std::array<Growth, velodyne::kRefusals> refused_;

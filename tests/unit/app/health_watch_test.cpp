@@ -43,9 +43,10 @@ protected:
     status_.last_datagram_ns = now_;
   }
   void packet() {
-    ++status_.packets;
+    ++status_.lidar.accepted;
+    ++status_.lidar.by_mode[0];
     status_.last_packet_ns = now_;
-    status_.sweeps = 1;
+    status_.lidar.sweeps = 1;
   }
   std::string update() {
     changed_ = watch_.update(now_, status_, last_list_, health_);
@@ -69,6 +70,7 @@ TEST_F(HealthWatchTest, WithoutASenderItIsBlindAndSaysSoOnceAfterASecond) {
   EXPECT_THAT(pass(100),
               AllOf(HasSubstr("W nothing has come on UDP port 2368"), HasSubstr("cable")));
   EXPECT_THAT(pass(5000), IsEmpty());
+  EXPECT_THAT(drive(50), AllOf(HasSubstr("first datagram"), Not(HasSubstr("again"))));
 }
 
 TEST_F(HealthWatchTest, OnlyOtherSendersIsSaid) {
@@ -81,7 +83,7 @@ TEST_F(HealthWatchTest, SeesOnceListsCome) {
   now_ += 10 * kMillisecond;
   datagram();
   packet();
-  status_.sweeps = 0;
+  status_.lidar.sweeps = 0;
   EXPECT_THAT(update(), AllOf(HasSubstr("from 192.168.1.201 and has 1206 bytes"),
                               HasSubstr("vlp16, strongest return")));
   EXPECT_TRUE(changed_);
@@ -113,8 +115,7 @@ TEST_F(HealthWatchTest, SilenceIsBlindWithin300MsAndSaidInTheLogAfterASecond) {
 
 TEST_F(HealthWatchTest, DatagramsThatAreNotPacketsAreWrongData) {
   datagram();
-  status_.refused[static_cast<std::size_t>(velodyne::Refusal::size)] = 3;
-  status_.last_refusal = velodyne::Refusal::size;
+  status_.lidar.refused[static_cast<std::size_t>(velodyne::Refusal::size)] = 3;
   EXPECT_THAT(pass(10), HasSubstr("refused: not 1206 bytes long (3 more"));
   EXPECT_EQ(health_.lidar.state, lidar_health_t::WRONG_DATA);
   EXPECT_THAT(health_.reason, HasSubstr("not 1206 bytes long"));
@@ -123,8 +124,15 @@ TEST_F(HealthWatchTest, DatagramsThatAreNotPacketsAreWrongData) {
   EXPECT_EQ(health_.lidar.reasons, static_cast<int>(health_.lidar.refused.size()));
 }
 
+TEST_F(HealthWatchTest, WhatProductByte0x21TurnsOutToBeIsSaidOnce) {
+  drive(50);
+  status_.firmware = velodyne::Firmware::early_vlp16;
+  EXPECT_THAT(drive(50), HasSubstr(std::string(sentence(velodyne::Firmware::early_vlp16))));
+  EXPECT_THAT(drive(50), IsEmpty());
+}
+
 TEST_F(HealthWatchTest, RefusalsAreSaidAtMostEveryTenSeconds) {
-  auto& refused = status_.refused[static_cast<std::size_t>(velodyne::Refusal::flags)];
+  auto& refused = status_.lidar.refused[static_cast<std::size_t>(velodyne::Refusal::flags)];
   drive(50);
   refused = 1;
   EXPECT_THAT(drive(50), HasSubstr("FF EE (1 more, 1 since the start)"));

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+
+#include "scree/config/settings.hpp"
+#include "scree/core/obstacle.hpp"
+#include "scree/core/result.hpp"
+#include "scree/core/sweep.hpp"
+
+namespace scree {
+
+/// What did not fit in the detector's memory, in one sweep.
+struct Dropped {
+  std::uint64_t points = 0, edge_points = 0, obstacles = 0;
+};
+
+/// The detector's work on one sweep: the list is valid until the next call. Called from one thread.
+using Process = std::function<const ObstacleList&(const Sweep& sweep, Dropped& dropped)>;
+
+/// The robot's daemon: one thread reads the lidar, one detects, one publishes lists and health and
+/// writes the log. Between them lie bounded rings; where one is full the newest is dropped and
+/// counted. A sensor that is lost is waited for, for ever.
+class Daemon {
+public:
+  /// Binds the ports, opens LCM and starts the threads. The caller blocks the signals that it waits
+  /// for before, because threads inherit what is blocked.
+  static Result<std::unique_ptr<Daemon>> start(const Settings& settings, Process process);
+
+  /// Stops and joins the threads.
+  virtual ~Daemon() = default;
+};
+
+}  // namespace scree

@@ -1,0 +1,205 @@
+#include "scree/app/daemon.hpp"
+
+#include <pthread.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <thread>
+#include <utility>
+
+#include "clocks.hpp"
+#include "hand_over.hpp"
+#include "health_watch.hpp"
+#include "lidar_reader.hpp"
+#include "scree/core/latency_histogram.hpp"
+#include "scree/publish/publisher.hpp"
+
+namespace scree {
+namespace {
+
+// One sweep in work and two that wait: enough for a slow one, and never more than 0.3 s old at 10
+// Hz.
+constexpr std::size_t kSweeps = 3;
+constexpr std::size_t kLists = 4;
+constexpr std::chrono::milliseconds kLook{50};  // how often health is looked at
+constexpr std::int64_t kReport = 1'000'000'000;
+
+struct FoundList {
+  explicit FoundList(std::size_t max_obstacles) : list(max_obstacles) {}
+
+  ObstacleList list;
+  std::int64_t arrival_ns = 0;   // of the sweep's last packet, host time
+  std::int64_t detector_ns = 0;  // how long the detector worked
+  Dropped dropped;
+};
+
+void copy(const ObstacleList& from, ObstacleList& to) {
+  to.stamp_ns = from.stamp_ns;
+  to.pose = from.pose;
+  to.obstacles.resize(std::min(from.obstacles.size(), to.obstacles.capacity()));
+  std::copy_n(from.obstacles.begin(), to.obstacles.size(), to.obstacles.begin());
+}
+
+latency_t summary(const LatencyHistogram& histogram) {
+  const auto milliseconds = [](std::int64_t ns) { return static_cast<double>(ns) / 1e6; };
+  return {static_cast<std::int64_t>(histogram.count()), milliseconds(histogram.quantile_ns(0.5)),
+          milliseconds(histogram.quantile_ns(0.99)), milliseconds(histogram.max_ns())};
+}
+
+class Threads final : public Daemon {
+public:
+  Threads(const Settings& settings, Process process, LidarPorts ports, Publisher publisher)
+      : sweeps_(kSweeps, [] { return TimedSweep(); }),
+        lists_(kLists, [&] { return FoundList(max_obstacles(settings)); }),
+        reader_(settings.lidar, std::move(ports), sweeps_),
+        process_(std::move(process)),
+        publisher_(std::move(publisher)),
+        watch_(settings.lidar, steady_ns()) {
+    health_.version = SCREE_VERSION;
+    reading_ = run("lidar", [this] { reader_.run(); });
+    detecting_ = run("detector", [this] { detect(); });
+    publishing_ = run("publisher", [this] { publish(); });
+  }
+
+  ~Threads() override {
+    stop_ = true;
+    reader_.stop();
+    sweeps_.wake();
+    lists_.wake();
+    for (std::thread* thread : {&reading_, &detecting_, &publishing_}) thread->join();
+  }
+
+  static std::size_t max_obstacles(const Settings& settings) {
+    return static_cast<std::size_t>(settings.detect_sweep.max_obstacles);
+  }
+
+private:
+  template <class Work>
+  static std::thread run(const char* name, Work work) {
+    std::thread thread(work);
+    pthread_setname_np(thread.native_handle(), name);  // as `top -H` shows it
+    return thread;
+  }
+
+  void detect() {
+    while (!stop_) {
+      sweeps_.wait(std::chrono::hours(1));
+      while (TimedSweep* sweep = stop_ ? nullptr : sweeps_.take_full()) {
+        detect(*sweep);
+        sweeps_.give_back(sweep);
+      }
+    }
+  }
+
+  void detect(const TimedSweep& sweep) {
+    Dropped dropped;
+    const std::int64_t begin = steady_ns();
+    const ObstacleList& list = process_(sweep.sweep, dropped);
+    const std::int64_t end = steady_ns();
+    FoundList* found = lists_.take_free();
+    if (found == nullptr) {
+      lists_dropped_.fetch_add(1, std::memory_order_relaxed);
+      return;
+    }
+    copy(list, found->list);
+    found->arrival_ns = sweep.arrival_ns;
+    found->detector_ns = end - begin;
+    found->dropped = dropped;
+    lists_.hand_over(found);
+  }
+
+  void publish() {
+    std::int64_t next_look = steady_ns();
+    while (!stop_) {
+      const std::int64_t now = steady_ns();
+      if (now >= next_look) {
+        look(now);
+        next_look = now + std::chrono::nanoseconds(kLook).count();
+      }
+      lists_.wait(kLook);
+      while (FoundList* found = lists_.take_full()) {
+        publish(*found);
+        lists_.give_back(found);
+      }
+    }
+    health_.state = health_t::BLIND;
+    health_.reason = "screed was stopped";
+    report(steady_ns());
+  }
+
+  void publish(const FoundList& found) {
+    if (publisher_.publish(found.list)) {
+      ++health_.lists_published;
+    } else {
+      ++health_.lists_failed;
+    }
+    latency_.record(host_ns() - found.arrival_ns);
+    detector_time_.record(found.detector_ns);
+    health_.edge_points_dropped += static_cast<std::int64_t>(found.dropped.edge_points);
+    health_.obstacles_dropped += static_cast<std::int64_t>(found.dropped.obstacles);
+    points_dropped_ += static_cast<std::int64_t>(found.dropped.points);
+    last_list_ns_ = steady_ns();
+  }
+
+  void look(std::int64_t now) {
+    const LidarStatus& lidar = reader_.status();
+    const bool has_changed = watch_.update(now, lidar, last_list_ns_, health_);
+    for (const auto& [is_warning, text] : watch_.log()) {
+      spdlog::log(is_warning ? spdlog::level::warn : spdlog::level::info, text);
+    }
+    health_.sweeps = static_cast<std::int64_t>(lidar.lidar.sweeps);
+    health_.sweeps_dropped = static_cast<std::int64_t>(lidar.sweeps_dropped);
+    health_.points_dropped = points_dropped_ + static_cast<std::int64_t>(lidar.lidar.dropped);
+    if (has_changed || now - last_report_ns_ >= kReport) report(now);
+  }
+
+  void report(std::int64_t now) {
+    const double seconds = static_cast<double>(now - last_report_ns_) / 1e9;
+    health_.stamp_ns = host_ns();
+    health_.lidar.packet_rate =
+        static_cast<double>(health_.lidar.packets - reported_packets_) / seconds;
+    health_.sweeps_waiting = static_cast<std::int32_t>(sweeps_.waiting());
+    health_.lists_dropped = lists_dropped_.load(std::memory_order_relaxed);
+    health_.latency = summary(latency_);
+    health_.detector_time = summary(detector_time_);
+    if (!publisher_.publish(health_)) spdlog::warn("LCM does not take the health message");
+    reported_packets_ = health_.lidar.packets;
+    last_report_ns_ = now;
+  }
+
+  std::atomic<bool> stop_{false};
+  SweepRing sweeps_;
+  HandOver<FoundList> lists_;
+  std::atomic<std::int64_t> lists_dropped_{0};
+  LidarReader reader_;
+  Process process_;
+
+  // Of the publishing thread alone.
+  Publisher publisher_;
+  HealthWatch watch_;
+  health_t health_{};
+  LatencyHistogram latency_, detector_time_;
+  std::int64_t last_list_ns_ = 0, last_report_ns_ = steady_ns();
+  std::int64_t points_dropped_ = 0, reported_packets_ = 0;
+
+  std::thread reading_, detecting_, publishing_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings, Process process) {
+  auto ports = LidarPorts::open(settings.lidar);
+  if (!ports) return tl::make_unexpected(ports.error());
+  auto publisher = Publisher::open(settings.lcm.url, Threads::max_obstacles(settings));
+  if (!publisher) return tl::make_unexpected(publisher.error());
+  spdlog::info("listening on {}, UDP port {} for data and {} for position packets, from {}",
+               settings.lidar.address, ports->data.port(), ports->position.port(),
+               settings.lidar.sender.empty() ? "any sender" : settings.lidar.sender);
+  spdlog::info("publishing on {}", settings.lcm.url);
+  return std::make_unique<Threads>(settings, std::move(process), std::move(*ports),
+                                   std::move(*publisher));
+}
+
+}  // namespace scree

@@ -1,0 +1,84 @@
+#include "lidar_reader.hpp"
+
+#include <poll.h>
+
+#include <iterator>
+#include <utility>
+
+#include "clocks.hpp"
+#include "scree/drivers/velodyne/position_packet.hpp"
+
+namespace scree {
+namespace {
+
+// Datagrams read from one port before the other one and stop() get their turn.
+constexpr int kBatch = 64;
+
+}  // namespace
+
+Result<LidarPorts> LidarPorts::open(const LidarSettings& settings) {
+  auto data = UdpReceiver::open(settings.address, settings.port, settings.sender);
+  if (!data) return tl::make_unexpected(data.error());
+  auto position = UdpReceiver::open(settings.address, settings.position_port, settings.sender);
+  if (!position) return tl::make_unexpected(position.error());
+  return LidarPorts{std::move(*data), std::move(*position)};
+}
+
+LidarReader::LidarReader(const LidarSettings& settings, LidarPorts ports, SweepRing& sweeps)
+    : ports_(std::move(ports)),
+      sweeps_(sweeps),
+      stream_(settings, [this](Sweep& sweep) { hand_over(sweep); }) {}
+
+void LidarReader::run() {
+  pollfd wait_for[] = {{ports_.data.descriptor(), POLLIN, 0},
+                       {ports_.position.descriptor(), POLLIN, 0},
+                       {stop_.descriptor(), POLLIN, 0}};
+  while (true) {
+    if (poll(wait_for, std::size(wait_for), -1) < 0) continue;  // a signal came between
+    if (wait_for[2].revents != 0) return;
+    if (wait_for[0].revents != 0) read_data();
+    if (wait_for[1].revents != 0) read_position();
+    status_.data_port = ports_.data.counts();
+    shared_status_.put(status_);
+  }
+}
+
+void LidarReader::read_data() {
+  const std::uint64_t accepted = stream_.counters().accepted;
+  for (int i = 0; i < kBatch; ++i) {
+    const auto datagram = ports_.data.receive(buffer_);
+    if (!datagram) break;
+    status_.sender = datagram->sender;
+    status_.datagram_size = static_cast<std::uint32_t>(datagram->bytes.size());
+    status_.last_datagram_ns = steady_ns();
+    arrival_ns_ = datagram->arrival_ns;
+    stream_.take(datagram->bytes, datagram->arrival_ns);
+  }
+  status_.lidar = stream_.counters();
+  status_.firmware = stream_.firmware();
+  if (status_.lidar.accepted != accepted) status_.last_packet_ns = steady_ns();
+}
+
+void LidarReader::read_position() {
+  for (int i = 0; i < kBatch; ++i) {
+    const auto datagram = ports_.position.receive(buffer_);
+    if (!datagram) return;
+    if (velodyne::parse_position_packet(datagram->bytes)) ++status_.position_packets;
+  }
+}
+
+void LidarReader::hand_over(Sweep& sweep) {
+  // Nothing seen is not the same as nothing there: a covered sensor must not give empty lists.
+  status_.is_last_sweep_empty = sweep.points.empty();
+  if (sweep.points.empty()) return;
+  TimedSweep* item = sweeps_.take_free();
+  if (item == nullptr) {
+    ++status_.sweeps_dropped;
+    return;
+  }
+  std::swap(item->sweep, sweep);
+  item->arrival_ns = arrival_ns_;
+  sweeps_.hand_over(item);
+}
+
+}  // namespace scree

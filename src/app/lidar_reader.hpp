@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "event.hpp"
+#include "hand_over.hpp"
+#include "latest.hpp"
+#include "lidar_status.hpp"
+#include "scree/config/settings.hpp"
+#include "scree/core/result.hpp"
+#include "scree/core/sweep.hpp"
+#include "scree/drivers/velodyne/lidar_stream.hpp"
+#include "scree/drivers/velodyne/udp_receiver.hpp"
+
+namespace scree {
+
+struct TimedSweep {
+  Sweep sweep{velodyne::kSweepCapacity};
+  std::int64_t arrival_ns = 0;  ///< of the packet that completed it, host time
+};
+using SweepRing = HandOver<TimedSweep>;
+
+/// The lidar's two ports, bound.
+struct LidarPorts {
+  UdpReceiver data, position;
+
+  static Result<LidarPorts> open(const LidarSettings& settings);
+};
+
+/// Reads the lidar's two ports and hands over each complete sweep. run() is the work of a thread;
+/// it allocates nothing and blocks only in poll().
+class LidarReader {
+public:
+  LidarReader(const LidarSettings& settings, LidarPorts ports, SweepRing& sweeps);
+
+  /// Returns after stop() was called from another thread.
+  void run();
+  void stop() { stop_.wake(); }
+
+  /// For one other thread: what was seen so far.
+  const LidarStatus& status() { return shared_status_.get(); }
+
+private:
+  void read_data();
+  void read_position();
+  void hand_over(Sweep& sweep);
+
+  LidarPorts ports_;
+  SweepRing& sweeps_;
+  velodyne::LidarStream stream_;
+  LidarStatus status_;
+  Latest<LidarStatus> shared_status_;
+  Event stop_;
+  std::int64_t arrival_ns_ = 0;              // of the datagram under way
+  std::array<std::uint8_t, 2048> buffer_{};  // longer than a packet, to tell the size of others
+};
+
+}  // namespace scree

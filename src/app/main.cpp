@@ -1,0 +1,75 @@
+#include <signal.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+
+#include "scree/app/daemon.hpp"
+#include "scree/app/pipeline.hpp"
+
+namespace {
+
+enum ExitCode : int { kStopped = 0, kFailed = 1, kUsage = 2 };
+
+int failed(const std::string& reason) {
+  std::fprintf(stderr, "screed: %s\n", reason.c_str());
+  return kFailed;
+}
+
+scree::Process process_of(scree::Pipeline& pipeline) {
+  return [&pipeline](const scree::Sweep& sweep,
+                     scree::Dropped& dropped) -> const scree::ObstacleList& {
+    const scree::ObstacleList& list = pipeline.process(sweep);
+    const scree::StageCounts& counts = pipeline.detector().counts();
+    dropped = {counts.dropped, counts.edges_dropped, counts.obstacles_dropped};
+    return list;
+  };
+}
+
+int run(const std::filesystem::path& config) {
+  const auto settings = scree::load_settings(config);
+  if (!settings) return failed(settings.error().message);
+  auto pipeline = scree::Pipeline::make(*settings, config.parent_path());
+  if (!pipeline) return failed(pipeline.error().message);
+
+  sigset_t stop_signals;
+  sigemptyset(&stop_signals);
+  sigaddset(&stop_signals, SIGTERM);
+  sigaddset(&stop_signals, SIGINT);
+  pthread_sigmask(SIG_BLOCK, &stop_signals, nullptr);
+  auto daemon = scree::Daemon::start(*settings, process_of(*pipeline));
+  if (!daemon) return failed(daemon.error().message);
+
+  int signal = 0;
+  sigwait(&stop_signals, &signal);
+  spdlog::info("stopping: {}", signal == SIGINT ? "interrupted" : "asked to terminate");
+  return kStopped;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Finds obstacles in a lidar's data and publishes them on LCM");
+  app.name("screed");
+  app.set_version_flag("--version", SCREE_VERSION);
+  std::string config = "/etc/scree/scree.toml";
+  app.add_option("--config", config, "configuration file")
+      ->type_name("FILE")
+      ->capture_default_str();
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kStopped : kUsage;
+  }
+  // The journal has its own time stamps, people at a terminal do not.
+  spdlog::set_default_logger(spdlog::stderr_logger_mt("screed"));
+  spdlog::set_pattern("%H:%M:%S.%e %l: %v");
+  spdlog::flush_on(spdlog::level::info);
+  try {
+    return run(config);
+  } catch (const std::exception& error) {
+    return failed(error.what());
+  }
+}

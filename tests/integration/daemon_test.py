@@ -1,0 +1,171 @@
+"""screed and scree as programs: python3 daemon_test.py SCREED SCREE [TEST ...]"""
+
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import unittest
+
+from synthetic_capture import write_capture
+
+SCREED, SCREE = sys.argv[1:3]
+PATIENCE = 120  # seconds; only a hang lasts as long
+
+# Finds nothing, whatever the features are.
+NETWORK = """scree_network 1
+inputs 5
+hidden 1
+outputs 2
+form raw raw raw log1p log1p
+mean 0 0 0 0 0
+scale 1 1 1 1 1
+unit 0 0 0 0 0 0
+output 0 -9
+output 0 -9
+"""
+
+
+def free_port():
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+class DaemonTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+        self.port, self.position_port = free_port(), free_port()
+        self.url = f"udpm://239.255.76.67:{free_port()}?ttl=0"
+        self.config = self.write(
+            "robot.toml",
+            f'[lidar]\naddress = "127.0.0.1"\nport = {self.port}\n'
+            f"position_port = {self.position_port}\ntranslation = [0, 0, 0.95]\n"
+            f'[detect.sweep]\nnetwork = "network.txt"\n[lcm]\nurl = "{self.url}"\n',
+        )
+        self.write("network.txt", NETWORK)
+
+    def write(self, name, text):
+        path = os.path.join(self.folder, name)
+        with open(path, "w") as file:
+            file.write(text)
+        return path
+
+    def start(self, *arguments):
+        process = subprocess.Popen(
+            arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        )
+
+        def clean_up():
+            process.kill()
+            process.communicate()
+
+        self.addCleanup(clean_up)
+        return process
+
+    def start_daemon(self):
+        daemon = self.start(SCREED, "--config", self.config)
+        self.read_until(daemon.stderr, "publishing on")
+        return daemon
+
+    def run_to_end(self, *arguments):
+        return subprocess.run(arguments, capture_output=True, text=True, timeout=PATIENCE)
+
+    def read_until(self, stream, words):
+        for line in stream:
+            if words in line:
+                return line
+        self.fail(f'the program ended before it said "{words}"')
+
+    def watch(self, *arguments):
+        return [SCREE, "watch", "--url", self.url, *arguments]
+
+    def replay(self, *arguments):
+        capture = os.path.join(self.folder, "lidar.pcap")
+        write_capture(capture, seconds=1)
+        return [SCREE, "replay", capture, "--to", f"127.0.0.1:{self.port}",
+                "--position-port", str(self.position_port), *arguments]  # fmt: skip
+
+    def assert_fails(self, result, *words):
+        """It failed with one sentence that holds these words."""
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertEqual(result.stdout, "")
+        sentence = result.stderr.strip().splitlines()[-1]
+        for word in words:
+            self.assertIn(word, sentence)
+
+    def test_a_replayed_capture_gives_lists_and_health(self):
+        daemon = self.start_daemon()
+        lists = self.start(*self.watch("--json", "--count", "5"))
+        health = self.start(*self.watch())
+        self.read_until(health.stdout, "BLIND")
+        replay = self.start(*self.replay("--loop"))
+        self.read_until(health.stdout, "health ok")
+        output, _ = lists.communicate(timeout=PATIENCE)
+        self.assertEqual(lists.returncode, 0)
+        stamps = []
+        for line in output.splitlines():
+            found = json.loads(line)
+            self.assertEqual(list(found), ["stamp_ns", "pose", "obstacles"])
+            self.assertEqual(found["pose"], {"p": [0, 0, 0], "q": [1, 0, 0, 0]})
+            stamps.append(found["stamp_ns"])
+        self.assertEqual(len(stamps), 5)
+        self.assertEqual(stamps, sorted(stamps))
+
+        replay.send_signal(signal.SIGINT)
+        _, summary = replay.communicate(timeout=PATIENCE)
+        self.assertEqual(replay.returncode, 0, summary)
+        self.assertRegex(summary, r"^sent \d+ data packets to .* and \d+ position packets to ")
+        self.read_until(health.stdout, "BLIND")
+        daemon.terminate()
+        _, log = daemon.communicate(timeout=PATIENCE)
+        self.assertEqual(daemon.returncode, 0, log)
+        self.assertIn("is from 127.0.0.1 and has 1206 bytes", log)
+        self.assertIn("stopping", log)
+
+    def test_it_stops_when_interrupted_while_nothing_comes(self):
+        daemon = self.start_daemon()
+        daemon.send_signal(signal.SIGINT)
+        self.assertEqual(daemon.wait(timeout=PATIENCE), 0)
+
+    def test_no_sender_is_said(self):
+        daemon = self.start_daemon()
+        self.assertIn(f"UDP port {self.port}", self.read_until(daemon.stderr, "nothing has come"))
+        result = self.run_to_end(*self.watch("--json", "--seconds", "1.5"))
+        self.assert_fails(result, "no obstacle list")
+
+    def test_a_second_daemon_names_the_port(self):
+        self.start_daemon()
+        result = self.run_to_end(SCREED, "--config", self.config)
+        self.assert_fails(result, f"UDP port {self.port}", "in use")
+
+    def test_a_mistake_in_the_configuration_names_file_line_and_key(self):
+        config = self.write("wrong.toml", "[lidar]\nport = 70000\n")
+        result = self.run_to_end(SCREED, "--config", config)
+        self.assert_fails(result, f"{config}:2: lidar.port")
+        result = self.run_to_end(SCREED, "--config", os.path.join(self.folder, "none.toml"))
+        self.assert_fails(result, "none.toml")
+
+    def test_an_unusable_lcm_url_is_explained(self):
+        config = self.write("wrong.toml", f'[lidar]\nport = {self.port}\nposition_port = '
+                            f'{self.position_port}\n[detect.sweep]\nnetwork = "network.txt"\n'
+                            '[lcm]\nurl = "udpm://127.0.0.1:7667"\n')  # fmt: skip
+        result = self.run_to_end(SCREED, "--config", config)
+        self.assert_fails(result, "udpm://127.0.0.1:7667", "multicast address")
+
+    def test_wrong_usage_ends_with_2(self):
+        self.assertEqual(self.run_to_end(SCREED, "--colour").returncode, 2)
+        self.assertEqual(self.run_to_end(*self.replay("--rate", "fast")).returncode, 2)
+        self.assertEqual(self.run_to_end(*self.watch("--count", "0")).returncode, 2)
+
+    def test_replay_and_watch_say_when_nobody_is_there(self):
+        self.assert_fails(self.run_to_end(*self.replay("--rate", "max")), "nobody listens")
+        self.assert_fails(self.run_to_end(*self.watch("--seconds", "0.5")), "nothing came")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])

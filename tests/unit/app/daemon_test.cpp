@@ -1,0 +1,178 @@
+#include "scree/app/daemon.hpp"
+
+#include <arpa/inet.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include <atomic>
+#include <chrono>
+#include <lcm/lcm-cpp.hpp>
+#include <thread>
+
+#include "scree/core/descriptor.hpp"
+#include "scree/publish/publisher.hpp"
+#include "unit/free_port.hpp"
+#include "unit/velodyne/packet_builder.hpp"
+
+namespace scree {
+namespace {
+
+using ::testing::HasSubstr;
+using Clock = std::chrono::steady_clock;
+
+/// A VLP-16 that turns 20 times a second, until it is destroyed.
+class Lidar {
+public:
+  explicit Lidar(int port) : thread_([this, port](std::stop_token stop) { run(stop, port); }) {}
+
+private:
+  void run(const std::stop_token& stop, int port) {
+    constexpr int kStep = 80;  // hundredths of a degree between two blocks
+    const Descriptor socket(::socket(AF_INET, SOCK_DGRAM, 0));
+    sockaddr_in to{};
+    to.sin_family = AF_INET;
+    to.sin_port = htons(static_cast<std::uint16_t>(port));
+    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    velodyne::PacketBuilder packet;
+    packet.all_shots(2500, 40);
+    const auto start = Clock::now();
+    for (int i = 0; !stop.stop_requested(); ++i) {
+      const std::int64_t due_ns = std::int64_t{i} * velodyne::kPacketNs;
+      packet.timestamp(static_cast<std::uint32_t>(due_ns / 1000));
+      packet.turn(i * kStep * static_cast<int>(velodyne::kBlocks) % velodyne::kFullTurn, kStep);
+      std::this_thread::sleep_until(start + std::chrono::nanoseconds(due_ns));
+      sendto(socket.get(), packet.bytes().data(), packet.bytes().size(), 0,
+             reinterpret_cast<const sockaddr*>(&to), sizeof to);
+    }
+  }
+
+  std::jthread thread_;
+};
+
+/// What comes on LCM.
+class Listener {
+public:
+  explicit Listener(const std::string& url) : lcm_(url) {
+    lcm_.subscribe(kObstaclesChannel, &Listener::take_list, this);
+    lcm_.subscribe(kHealthChannel, &Listener::take_health, this);
+  }
+  /// Receives until the condition holds; false after a minute.
+  template <class Condition>
+  bool until(Condition condition) {
+    const auto end = Clock::now() + std::chrono::minutes(1);
+    while (!condition()) {
+      if (Clock::now() > end) return false;
+      lcm_.handleTimeout(1000);
+    }
+    return true;
+  }
+
+  int lists = 0, healths = 0;
+  obstacle_list_t list{};
+  health_t health{};
+
+private:
+  void take_list(const lcm::ReceiveBuffer*, const std::string&, const obstacle_list_t* message) {
+    list = *message;
+    ++lists;
+  }
+  void take_health(const lcm::ReceiveBuffer*, const std::string&, const health_t* message) {
+    health = *message;
+    ++healths;
+  }
+  lcm::LCM lcm_;
+};
+
+class DaemonTest : public ::testing::Test {
+protected:
+  DaemonTest() {
+    settings_.lidar.address = "127.0.0.1";
+    settings_.lidar.port = free_port();
+    settings_.lidar.position_port = free_port();
+    settings_.lcm.url = free_lcm_url();
+    listener_.emplace(settings_.lcm.url);
+  }
+  /// Stands for the detector: an obstacle in each sweep.
+  const ObstacleList& process(const Sweep& sweep, Dropped& dropped) {
+    while (is_stuck_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    found_.stamp_ns = sweep.end_ns;
+    found_.obstacles.clear();
+    Obstacle rock;
+    rock.points = static_cast<std::uint32_t>(sweep.points.size());
+    found_.obstacles.push_back(rock);
+    dropped = {1, 2, 3};
+    return found_;
+  }
+  std::unique_ptr<Daemon> start() {
+    auto daemon = Daemon::start(
+        settings_, [this](const Sweep& sweep, Dropped& dropped) -> const ObstacleList& {
+          return process(sweep, dropped);
+        });
+    EXPECT_TRUE(daemon) << daemon.error().message;
+    return std::move(*daemon);
+  }
+
+  Settings settings_;
+  std::optional<Listener> listener_;
+  std::atomic<bool> is_stuck_ = false;
+  ObstacleList found_{1};
+};
+
+TEST_F(DaemonTest, ListsAndHealthComeAndBlindnessIsSaid) {
+  const auto daemon = start();
+  ASSERT_TRUE(listener_->until([&] { return listener_->healths > 0; }));
+  EXPECT_EQ(listener_->health.state, health_t::BLIND);
+  EXPECT_EQ(listener_->health.lidar.state, lidar_health_t::NEVER_SEEN);
+  EXPECT_EQ(listener_->lists, 0);
+  {
+    const Lidar lidar(settings_.lidar.port);
+    ASSERT_TRUE(listener_->until([&] {
+      return listener_->lists > 2 && listener_->health.state == health_t::OK &&
+             listener_->health.lists_published > 2;
+    }));
+    EXPECT_GT(listener_->list.stamp_ns, 0);
+    ASSERT_EQ(listener_->list.size, 1);
+    EXPECT_GT(listener_->list.obstacles[0].points, 10000);
+    EXPECT_EQ(listener_->health.lidar.sender, "127.0.0.1");
+    EXPECT_GT(listener_->health.lidar.packet_rate, 0);
+    EXPECT_GT(listener_->health.latency.max_ms, 0);
+    EXPECT_EQ(listener_->health.obstacles_dropped, 3 * listener_->health.detector_time.count);
+  }
+  ASSERT_TRUE(
+      listener_->until([&] { return listener_->health.lidar.state == lidar_health_t::SILENT; }));
+  EXPECT_EQ(listener_->health.state, health_t::BLIND);
+  EXPECT_THAT(listener_->health.reason, HasSubstr("no packets"));
+  const int lists = listener_->lists, healths = listener_->healths;
+  ASSERT_TRUE(listener_->until([&] { return listener_->healths > healths; }));
+  EXPECT_EQ(listener_->lists, lists) << "no list is published by a blind robot";
+}
+
+TEST_F(DaemonTest, ASlowDetectorLosesTheNewestSweepsAndTheyAreCounted) {
+  is_stuck_ = true;
+  const auto daemon = start();
+  const Lidar lidar(settings_.lidar.port);
+  EXPECT_TRUE(listener_->until([&] { return listener_->health.sweeps_dropped > 0; }));
+  EXPECT_EQ(listener_->lists, 0);
+  EXPECT_EQ(listener_->health.state, health_t::BLIND);
+  EXPECT_EQ(listener_->health.sweeps_waiting, 2);
+  is_stuck_ = false;
+  EXPECT_TRUE(listener_->until([&] { return listener_->health.state == health_t::OK; }));
+}
+
+TEST_F(DaemonTest, TheLastHealthSaysThatItWasStopped) {
+  start().reset();
+  EXPECT_TRUE(listener_->until([&] { return listener_->health.reason == "screed was stopped"; }));
+}
+
+TEST_F(DaemonTest, APortInUseIsOneSentence) {
+  const auto first = start();
+  const auto second = Daemon::start(settings_, {});
+  ASSERT_FALSE(second);
+  EXPECT_THAT(second.error().message, HasSubstr(std::to_string(settings_.lidar.port)));
+  EXPECT_THAT(second.error().message, HasSubstr("in use"));
+}
+
+}  // namespace
+}  // namespace scree

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "scree/core/obstacle.hpp"
+
+namespace scree::cli {
+
+/// Reads a file of obstacle lists, one JSON object a line, as append_json_line writes them. Throws
+/// Failure that names file and line where one is not an obstacle list.
+std::vector<ObstacleList> read_detections(const std::filesystem::path& file);
+
+}  // namespace scree::cli
