@@ -13,11 +13,24 @@
 
 namespace scree {
 
+// A ring of a single sweep is dense and the next ring far off: the kernel reaches from ring to ring,
+// weighs the nearest points most, and what is steep is too little to be thinned further.
 DetectSettings DetectSettings::for_sweep() {
   DetectSettings detect;
   detect.max_points = 1 << 17;
   detect.max_edge_points = 1 << 16;
   detect.leaf_size = 0.05;
+  detect.kernel_spacing = 0.20;
+  detect.kernel_radius = 0.60;
+  detect.kernel_bandwidth = 0.20;
+  detect.edge_threshold = 0.25;
+  detect.suppression = false;
+  detect.voxel_size = 0.10;
+  detect.seed_distance = 0.30;
+  detect.min_block_points = 3;
+  detect.cluster_tolerance = 0.50;
+  detect.min_cluster_size = 2;
+  detect.ground_outer = 1.5;
   detect.network = "network_sweep.txt";
   return detect;
 }

@@ -17,6 +17,7 @@ struct Failure : std::runtime_error {
 
 void add_info(CLI::App& app);
 void add_decode(CLI::App& app);
+void add_detect(CLI::App& app);
 void add_simulate(CLI::App& app);
 void add_train(CLI::App& app);
 void add_picture(CLI::App& app);

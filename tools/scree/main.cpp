@@ -10,6 +10,7 @@ enum ExitCode : int { kDone = 0, kFailed = 1, kUsage = 2 };
 void add_all(CLI::App& app) {
   scree::cli::add_info(app);
   scree::cli::add_decode(app);
+  scree::cli::add_detect(app);
   scree::cli::add_simulate(app);
   scree::cli::add_train(app);
   scree::cli::add_picture(app);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <ostream>
 #include <string_view>
 
 #include "scree/drivers/velodyne/data_packet.hpp"
@@ -15,10 +16,15 @@ using namespace velodyne;
 constexpr std::int64_t kStart = 1598612520'000000000;
 
 struct Case {
+  const char* name;
   LidarModel model;
   ReturnMode mode;
   double rate_hz;
 };
+
+void PrintTo(const Case& which, std::ostream* out) {
+  *out << which.name;
+}
 
 class SimulatedLidarDecodes : public testing::TestWithParam<Case> {};
 
@@ -68,11 +74,13 @@ TEST_P(SimulatedLidarDecodes, ToTheShotsThatWereCast) {
   EXPECT_GT(returns, 10000);
 }
 
-INSTANTIATE_TEST_SUITE_P(Modes, SimulatedLidarDecodes,
-                         testing::Values(Case{LidarModel::vlp16, ReturnMode::strongest, 10},
-                                         Case{LidarModel::vlp16, ReturnMode::dual, 10},
-                                         Case{LidarModel::vlp16, ReturnMode::last, 20},
-                                         Case{LidarModel::puck_hires, ReturnMode::strongest, 5}));
+INSTANTIATE_TEST_SUITE_P(
+    Modes, SimulatedLidarDecodes,
+    testing::Values(Case{"Vlp16Strongest", LidarModel::vlp16, ReturnMode::strongest, 10},
+                    Case{"Vlp16Dual", LidarModel::vlp16, ReturnMode::dual, 10},
+                    Case{"Vlp16Last20Hz", LidarModel::vlp16, ReturnMode::last, 20},
+                    Case{"HiRes5Hz", LidarModel::puck_hires, ReturnMode::strongest, 5}),
+    [](const testing::TestParamInfo<Case>& info) { return info.param.name; });
 
 TEST(SimulatedLidar, PositionPacketCarriesTheTimeOfDay) {
   TerrainSettings terrain_settings;

@@ -1,0 +1,162 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <cstdio>
+#include <fstream>
+#include <memory>
+
+#include "commands.hpp"
+#include "scree/app/pipeline.hpp"
+#include "scree/capture/capture.hpp"
+#include "scree/capture/pcap_reader.hpp"
+#include "scree/capture/pcd.hpp"
+#include "scree/drivers/velodyne/lidar_stream.hpp"
+#include "scree/publish/jsonl.hpp"
+#include "stages.hpp"
+
+namespace scree::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  fs::path input, config, out, stages;
+};
+
+/// The lists as lines of JSON, in a file or on standard output.
+class ListWriter {
+public:
+  explicit ListWriter(const fs::path& file) : to_stdout_(file.empty() || file == "-") {
+    if (to_stdout_) return;
+    file_.open(file, std::ios::binary);
+    if (!file_) throw Failure("cannot write " + file.string());
+  }
+
+  void write(const ObstacleList& list) {
+    line_.clear();
+    append_json_line(list, line_);
+    if (to_stdout_) {
+      std::fwrite(line_.data(), 1, line_.size(), stdout);
+    } else {
+      file_ << line_;
+    }
+  }
+
+  void finish() {
+    if (!to_stdout_ && !file_.flush()) throw Failure("cannot write the list: the disk may be full");
+  }
+
+  /// Where counts go, so that they do not mix with lists.
+  std::FILE* other_output() const { return to_stdout_ ? stderr : stdout; }
+
+private:
+  bool to_stdout_;
+  std::ofstream file_;
+  std::string line_;
+};
+
+void warn_of_losses(const StageCounts& counts, std::string_view what) {
+  const auto warn = [&](std::size_t count, std::string_view reason) {
+    if (count > 0) fmt::print(stderr, "scree: {}: {} {}\n", what, count, reason);
+  };
+  warn(counts.dropped, "points beyond max_points were dropped");
+  warn(counts.refused, "points are not finite or too far out, and were left out");
+  warn(counts.edges_dropped, "edge points beyond max_edge_points were dropped");
+  warn(counts.obstacles_dropped, "obstacles beyond max_obstacles were dropped");
+}
+
+struct Configuration {
+  Settings settings;
+  fs::path folder;  ///< where relative names are looked for
+};
+
+Configuration configuration(const Options& options) {
+  Configuration result;
+  const auto file = settings_file(options.input, options.config);
+  if (!file) return result;
+  auto settings = load_settings(*file);
+  if (!settings) throw Failure(settings.error().message);
+  result.settings = *std::move(settings);
+  result.folder = file->parent_path();
+  return result;
+}
+
+void detect_in_cloud(const Options& options) {
+  const Configuration config = configuration(options);
+  const auto cloud = read_pcd(options.input);
+  if (!cloud) throw Failure(cloud.error().message);
+  // At the desk there is time: nothing of the file is left out.
+  DetectSettings settings = config.settings.detect_cloud;
+  settings.max_points = std::max(settings.max_points, static_cast<int>(cloud->size()));
+  auto detector = make_detector(settings, config.folder);
+  if (!detector) throw Failure(detector.error().message);
+
+  ListWriter writer(options.out);
+  ObstacleList list(static_cast<std::size_t>(settings.max_obstacles));
+  detector->detect(*cloud, list.obstacles);
+  writer.write(list);
+  writer.finish();
+  warn_of_losses(detector->counts(), options.input.string());
+  if (options.stages.empty()) return;
+  write_stages(*detector, *cloud, options.stages);
+  fmt::print(writer.other_output(), "{}\n", chain(detector->counts()));
+}
+
+void detect_in_capture(const Options& options) {
+  const Configuration config = configuration(options);
+  const auto file = lidar_file(options.input);
+  if (!file) throw Failure(file.error().message);
+  auto reader = PcapReader::open(*file);
+  if (!reader) throw Failure(reader.error().message);
+  auto pipeline = Pipeline::make(config.settings, config.folder);
+  if (!pipeline) throw Failure(pipeline.error().message);
+
+  ListWriter writer(options.out);
+  std::size_t sweeps = 0;
+  velodyne::LidarStream stream(config.settings.lidar, [&](Sweep& sweep) {
+    writer.write(pipeline->process(sweep));
+    const std::string name = fmt::format("sweep_{:06}", sweeps++);
+    const StageCounts& counts = pipeline->detector().counts();
+    warn_of_losses(counts, name);
+    if (options.stages.empty()) return;
+    write_stages(pipeline->detector(), pipeline->ground(), options.stages / name);
+    fmt::print(writer.other_output(), "{}: {}\n", name, chain(counts));
+  });
+  Datagram datagram;
+  while (reader->next(datagram)) {
+    if (datagram.destination_port == config.settings.lidar.port) {
+      stream.take(datagram.payload, datagram.arrival_ns);
+    }
+  }
+  stream.flush();
+  writer.finish();
+  if (!reader->broken_off().empty()) fmt::print(stderr, "scree: {}\n", reader->broken_off());
+  if (stream.counters().accepted == 0) {
+    throw Failure(fmt::format(
+        "no packet of the configured lidar in {}: {} refused on port {}; `scree info` says more",
+        options.input.string(), stream.counters().all_refused(), config.settings.lidar.port));
+  }
+}
+
+}  // namespace
+
+void add_detect(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("detect", "Obstacles in a capture or a point cloud, one line a list");
+  auto options = std::make_shared<Options>();
+  command->add_option("INPUT", options->input, "capture (folder or .pcap) or cloud (.pcd)")
+      ->required()
+      ->check(CLI::ExistingPath);
+  command->add_option("--config", options->config, "configuration; default: the capture's own");
+  command->add_option("--out", options->out, "JSON lines file; default: standard output");
+  command->add_option("--stages", options->stages,
+                      "folder for the cloud of each stage as PCD; prints their counts");
+  command->callback([options] {
+    if (options->input.extension() == ".pcd") {
+      detect_in_cloud(*options);
+    } else {
+      detect_in_capture(*options);
+    }
+  });
+}
+
+}  // namespace scree::cli
