@@ -1,12 +1,15 @@
 #include <spdlog/fmt/fmt.h>
 
+#include <cmath>
+#include <filesystem>
 #include <memory>
+#include <utility>
 
 #include "commands.hpp"
 #include "detections.hpp"
+#include "lidar_capture.hpp"
 #include "scree/app/pipeline.hpp"
 #include "scree/capture/capture.hpp"
-#include "scree/capture/pcap_reader.hpp"
 #include "scree/capture/pcd.hpp"
 #include "scree/drivers/velodyne/lidar_stream.hpp"
 #include "top_view.hpp"
@@ -20,31 +23,62 @@ struct Options {
 
 struct Ground {
   PointCloud points;  // `base` frame
-  std::string what;   // "the last of 20 sweeps"
+  std::string what;   // for the subtitle
 };
 
-/// The last complete sweep of a capture, as the detector gets it.
-Ground ground_of_capture(const Options& options) {
-  const auto file = lidar_file(options.input);
-  if (!file) throw Failure(file.error().message);
-  Settings settings;
-  std::filesystem::path config_folder;
-  if (const auto config = settings_file(options.input, options.config)) {
-    auto loaded = load_settings(*config);
-    if (!loaded) throw Failure(loaded.error().message);
-    settings = std::move(*loaded);
-    config_folder = config->parent_path();
-  }
-  auto reader = PcapReader::open(*file);
-  if (!reader) throw Failure(reader.error().message);
+std::string time_of_day(std::int64_t stamp_ns) {
+  const std::int64_t milliseconds = stamp_ns / 1'000'000 % 86'400'000;
+  return fmt::format("{:02}:{:02}:{:02}.{:03} UTC", milliseconds / 3'600'000,
+                     milliseconds / 60'000 % 60, milliseconds / 1000 % 60, milliseconds % 1000);
+}
 
-  return {};
+/// The sweep that a list was computed from; for a list of a live daemon, whose times are other
+/// ones, the last whole sweep of the capture. The very last may be a part of a turn: the fuller of
+/// the last two is whole.
+class SweepChoice {
+public:
+  explicit SweepChoice(std::int64_t list_stamp_ns) : wanted_ns_(list_stamp_ns) {}
+
+  void take(Sweep& sweep) {
+    if (is_found_) return;
+    is_found_ = sweep.end_ns == wanted_ns_;
+    std::swap(last_, before_last_);
+    std::swap(last_, sweep);
+  }
+  const Sweep& chosen() const {
+    return is_found_ || last_.points.size() >= before_last_.points.size() ? last_ : before_last_;
+  }
+
+private:
+  std::int64_t wanted_ns_;
+  bool is_found_ = false;
+  Sweep last_{velodyne::kSweepCapacity}, before_last_{velodyne::kSweepCapacity};
+};
+
+/// A sweep of the capture as the detector gets it.
+Ground ground_of_capture(const Options& options, std::int64_t list_stamp_ns) {
+  const Settings settings = capture_settings(options.input, options.config);
+  const auto config = settings_file(options.input, options.config);
+  auto pipeline = Pipeline::make(settings, config ? config->parent_path() : "");
+  if (!pipeline) throw Failure(pipeline.error().message);
+  SweepChoice choice(list_stamp_ns);
+  velodyne::LidarStream stream(settings.lidar, [&](Sweep& sweep) { choice.take(sweep); });
+  LidarCapture capture(options.input, settings);
+  capture.play(stream);
+  report_capture(capture, stream);
+  pipeline->process(choice.chosen());
+  const PointCloud& ground = pipeline->ground();
+  Ground copy{PointCloud(ground.size()), "one sweep, " + time_of_day(choice.chosen().end_ns)};
+  for (std::size_t i = 0; i < ground.size(); ++i) {
+    copy.points.push_back(ground.x[i], ground.y[i], ground.z[i], ground.reflectivity[i]);
+  }
+  return copy;
 }
 
 Ground ground_of_cloud(const Options& options) {
   auto cloud = read_pcd(options.input);
   if (!cloud) throw Failure(cloud.error().message);
-  return {std::move(*cloud), "point cloud"};
+  return {std::move(*cloud), "one point cloud"};
 }
 
 /// The obstacles of a list in `base`.
@@ -64,7 +98,8 @@ void picture(const Options& options) {
   const auto lists = read_detections(options.detections);
   if (lists.empty()) throw Failure(options.detections + " holds no obstacle list");
   const bool is_cloud = std::filesystem::path(options.input).extension() == ".pcd";
-  const Ground ground = is_cloud ? ground_of_cloud(options) : ground_of_capture(options);
+  const Ground ground =
+      is_cloud ? ground_of_cloud(options) : ground_of_capture(options, lists.back().stamp_ns);
   const std::string title =
       "Obstacles of " + std::filesystem::path(options.input).lexically_normal().filename().string();
   Drawing drawing = draw_top_view(ground.points, in_base(lists.back()), title, ground.what);
