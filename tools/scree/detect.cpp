@@ -5,9 +5,9 @@
 #include <memory>
 
 #include "commands.hpp"
+#include "lidar_capture.hpp"
 #include "scree/app/pipeline.hpp"
 #include "scree/capture/capture.hpp"
-#include "scree/capture/pcap_reader.hpp"
 #include "scree/capture/pcd.hpp"
 #include "scree/drivers/velodyne/lidar_stream.hpp"
 #include "scree/publish/jsonl.hpp"
@@ -64,30 +64,19 @@ void warn_of_losses(const StageCounts& counts, std::string_view what) {
   warn(counts.obstacles_dropped, "obstacles beyond max_obstacles were dropped");
 }
 
-struct Configuration {
-  Settings settings;
-  fs::path folder;  ///< where relative names are looked for
-};
-
-Configuration configuration(const Options& options) {
-  Configuration result;
-  const auto file = settings_file(options.input, options.config);
-  if (!file) return result;
-  auto settings = load_settings(*file);
-  if (!settings) throw Failure(settings.error().message);
-  result.settings = *std::move(settings);
-  result.folder = file->parent_path();
-  return result;
+/// Where relative names of a configuration are looked for.
+fs::path settings_folder(const Options& options) {
+  return settings_file(options.input, options.config).value_or(fs::path()).parent_path();
 }
 
 void detect_in_cloud(const Options& options) {
-  const Configuration config = configuration(options);
+  const Settings all = capture_settings(options.input, options.config);
   const auto cloud = read_pcd(options.input);
   if (!cloud) throw Failure(cloud.error().message);
   // At the desk there is time: nothing of the file is left out.
-  DetectSettings settings = config.settings.detect_cloud;
+  DetectSettings settings = all.detect_cloud;
   settings.max_points = std::max(settings.max_points, static_cast<int>(cloud->size()));
-  auto detector = make_detector(settings, config.folder);
+  auto detector = make_detector(settings, settings_folder(options));
   if (!detector) throw Failure(detector.error().message);
 
   ListWriter writer(options.out);
@@ -102,17 +91,14 @@ void detect_in_cloud(const Options& options) {
 }
 
 void detect_in_capture(const Options& options) {
-  const Configuration config = configuration(options);
-  const auto file = lidar_file(options.input);
-  if (!file) throw Failure(file.error().message);
-  auto reader = PcapReader::open(*file);
-  if (!reader) throw Failure(reader.error().message);
-  auto pipeline = Pipeline::make(config.settings, config.folder);
+  const Settings settings = capture_settings(options.input, options.config);
+  LidarCapture capture(options.input, settings);
+  auto pipeline = Pipeline::make(settings, settings_folder(options));
   if (!pipeline) throw Failure(pipeline.error().message);
 
   ListWriter writer(options.out);
   std::size_t sweeps = 0;
-  velodyne::LidarStream stream(config.settings.lidar, [&](Sweep& sweep) {
+  velodyne::LidarStream stream(settings.lidar, [&](Sweep& sweep) {
     writer.write(pipeline->process(sweep));
     const std::string name = fmt::format("sweep_{:06}", sweeps++);
     const StageCounts& counts = pipeline->detector().counts();
@@ -121,20 +107,9 @@ void detect_in_capture(const Options& options) {
     write_stages(pipeline->detector(), pipeline->ground(), options.stages / name);
     fmt::print(writer.other_output(), "{}: {}\n", name, chain(counts));
   });
-  Datagram datagram;
-  while (reader->next(datagram)) {
-    if (datagram.destination_port == config.settings.lidar.port) {
-      stream.take(datagram.payload, datagram.arrival_ns);
-    }
-  }
-  stream.flush();
+  capture.play(stream);
   writer.finish();
-  if (!reader->broken_off().empty()) fmt::print(stderr, "scree: {}\n", reader->broken_off());
-  if (stream.counters().accepted == 0) {
-    throw Failure(fmt::format(
-        "no packet of the configured lidar in {}: {} refused on port {}; `scree info` says more",
-        options.input.string(), stream.counters().all_refused(), config.settings.lidar.port));
-  }
+  report_capture(capture, stream);
 }
 
 }  // namespace
