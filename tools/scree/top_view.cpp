@@ -45,8 +45,8 @@ double length_of(double least) {
 class View {
 public:
   View(const PointView& points, const FixedVector<Obstacle>& obstacles) {
-    auto [x0, x1] = bulk(points.x, 0.01);
-    auto [y0, y1] = bulk(points.y, 0.01);
+    auto [x0, x1] = bulk(points.x, 0.03);
+    auto [y0, y1] = bulk(points.y, 0.03);
     for (const Obstacle& obstacle : obstacles) {
       const double reach = obstacle.extent.head<2>().norm() / 2;
       x0 = std::min(x0, obstacle.center.x() - reach);
