@@ -47,7 +47,6 @@ void Pipeline::move_to_base(const Sweep& sweep) {
   const Eigen::Vector3f translation = mount.translation.cast<float>();
   const auto nearest = static_cast<float>(lidar_.min_range * lidar_.min_range);
   const auto farthest = static_cast<float>(lidar_.max_range * lidar_.max_range);
-  const auto clearance = static_cast<float>(lidar_.clearance);
   ground_.clear();
   dropped_ = 0;
   for (std::size_t i = 0; i < sweep.points.size(); ++i) {
@@ -55,7 +54,6 @@ void Pipeline::move_to_base(const Sweep& sweep) {
     const float square = seen.squaredNorm();
     if (square < nearest || square > farthest) continue;
     const Eigen::Vector3f point = rotation * seen + translation;
-    if (point.z() > clearance + point.head<2>().norm() / 3) continue;
     if (!ground_.push_back(point.x(), point.y(), point.z(), sweep.points.reflectivity[i])) {
       ++dropped_;
     }
