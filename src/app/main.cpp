@@ -22,7 +22,7 @@ scree::Process process_of(scree::Pipeline& pipeline) {
   return [&pipeline](const scree::Sweep& sweep,
                      scree::Dropped& dropped) -> const scree::ObstacleList& {
     const scree::ObstacleList& list = pipeline.process(sweep);
-    const scree::StageCounts& counts = pipeline.detector().counts();
+    const scree::StageCounts counts = pipeline.counts();
     dropped = {counts.dropped, counts.edges_dropped, counts.obstacles_dropped};
     return list;
   };

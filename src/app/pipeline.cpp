@@ -34,21 +34,29 @@ const ObstacleList& Pipeline::process(const Sweep& sweep) {
   return list_;
 }
 
+StageCounts Pipeline::counts() const {
+  StageCounts counts = detector_.counts();
+  counts.input += dropped_;
+  counts.dropped += dropped_;
+  return counts;
+}
+
 void Pipeline::move_to_base(const Sweep& sweep) {
   const Pose mount = lidar_.mount();
   const Eigen::Matrix3f rotation = mount.rotation.toRotationMatrix().cast<float>();
   const Eigen::Vector3f translation = mount.translation.cast<float>();
   const auto nearest = static_cast<float>(lidar_.min_range * lidar_.min_range);
   const auto farthest = static_cast<float>(lidar_.max_range * lidar_.max_range);
-  const auto clearance = static_cast<float>(lidar_.clearance);
   ground_.clear();
+  dropped_ = 0;
   for (std::size_t i = 0; i < sweep.points.size(); ++i) {
     const Eigen::Vector3f seen(sweep.points.x[i], sweep.points.y[i], sweep.points.z[i]);
     const float square = seen.squaredNorm();
     if (square < nearest || square > farthest) continue;
     const Eigen::Vector3f point = rotation * seen + translation;
-    if (point.z() > clearance + point.head<2>().norm() / 3) continue;
-    ground_.push_back(point.x(), point.y(), point.z(), sweep.points.reflectivity[i]);
+    if (!ground_.push_back(point.x(), point.y(), point.z(), sweep.points.reflectivity[i])) {
+      ++dropped_;
+    }
   }
 }
 

@@ -13,8 +13,8 @@
 
 namespace scree {
 
-// A ring of a single sweep is dense and the next ring far off: the kernel reaches from ring to ring,
-// weighs the nearest points most, and what is steep is too little to be thinned further.
+// A ring of a single sweep is dense and the next ring far off: the kernel reaches from ring to
+// ring, weighs the nearest points most, and what is steep is too little to be thinned further.
 DetectSettings DetectSettings::for_sweep() {
   DetectSettings detect;
   detect.max_points = 1 << 17;

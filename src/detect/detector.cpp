@@ -18,6 +18,7 @@ float common_reach(const DetectSettings& settings, const ElevationGradient& grad
   const std::size_t points = count(settings.max_points), edges = count(settings.max_edge_points);
   return std::min(
       {reach_of_cells(static_cast<float>(settings.leaf_size), points, 3),
+       reach_of_cells(PlaneCells::cell_size(Overhangs::kRadius), points, 2),
        reach_of_cells(PlaneCells::cell_size(gradient.reach()), points, 2),
        reach_of_cells(PlaneCells::cell_size(suppression.reach()), edges, 2),
        reach_of_cells(static_cast<float>(settings.voxel_size), edges, 3),
@@ -34,6 +35,7 @@ Detector::Detector(const DetectSettings& settings, Network network)
       limit_(0),
       voxel_grid_(count(settings.max_points)),
       thinned_(count(settings.max_points)),
+      overhangs_(count(settings.max_points)),
       gradient_{.spacing = static_cast<float>(settings.kernel_spacing),
                 .radius = static_cast<float>(settings.kernel_radius),
                 .bandwidth = static_cast<float>(settings.kernel_bandwidth * settings.kernel_radius),
@@ -75,6 +77,9 @@ void Detector::thin(PointView cloud) {
   counts_.dropped = intake.dropped;
   counts_.refused = intake.refused;
   counts_.voxels = thinned_.size();
+  const auto clearance = static_cast<float>(settings_.clearance);
+  if (clearance > 0) overhangs_.remove(thinned_, clearance);
+  counts_.below_clearance = thinned_.size();
 }
 
 void Detector::find_edges() {
@@ -140,8 +145,11 @@ void Detector::recognise(FixedVector<Obstacle>& obstacles) {
   for (const Cluster& cluster : clusters_.all()) {
     const Answer answer = network_(cluster.features);
     if (answer.confidence() < static_cast<float>(settings_.min_confidence)) continue;
-    ++counts_.obstacles;
     const bool is_positive = answer.kind() == ObstacleKind::positive;
+    const float height = cluster.features[is_positive ? max_height : min_height];
+    // A rock below the ground or a hole above it is the network's error, not an obstacle.
+    if (is_positive ? height <= 0 : height >= 0) continue;
+    ++counts_.obstacles;
     const float low = std::min(cluster.lowest, cluster.ground);
     const float high = std::max(cluster.highest, cluster.ground);
     Obstacle obstacle;
@@ -151,7 +159,7 @@ void Detector::recognise(FixedVector<Obstacle>& obstacles) {
     obstacle.center = {cluster.box.center_x, cluster.box.center_y, (low + high) / 2};
     obstacle.extent = {cluster.box.length, cluster.box.width, high - low};
     obstacle.yaw = cluster.box.yaw;
-    obstacle.height = cluster.features[is_positive ? max_height : min_height];
+    obstacle.height = height;
     obstacle.points = cluster.end - cluster.begin;
     if (!obstacles.push_back(obstacle)) ++counts_.obstacles_dropped;
   }

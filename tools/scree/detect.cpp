@@ -101,7 +101,7 @@ void detect_in_capture(const Options& options) {
   velodyne::LidarStream stream(settings.lidar, [&](Sweep& sweep) {
     writer.write(pipeline->process(sweep));
     const std::string name = fmt::format("sweep_{:06}", sweeps++);
-    const StageCounts& counts = pipeline->detector().counts();
+    const StageCounts counts = pipeline->counts();
     warn_of_losses(counts, name);
     if (options.stages.empty()) return;
     write_stages(pipeline->detector(), pipeline->ground(), options.stages / name);

@@ -66,10 +66,11 @@ void write_stages(const Detector& detector, PointView input, const std::filesyst
 
 std::string chain(const StageCounts& counts) {
   return fmt::format(
-      "input {} -> voxel grid {} -> with slope {} -> edges {} -> suppression {} -> super-voxels {} "
+      "input {} -> voxel grid {} -> below clearance {} -> with slope {} -> edges {} -> suppression "
+      "{} -> super-voxels {} "
       "-> large enough {} -> clusters {} -> obstacles {}",
-      counts.input, counts.voxels, counts.known, counts.edges, counts.kept, counts.blocks,
-      counts.blocks_kept, counts.clusters, counts.obstacles);
+      counts.input, counts.voxels, counts.below_clearance, counts.known, counts.edges, counts.kept,
+      counts.blocks, counts.blocks_kept, counts.clusters, counts.obstacles);
 }
 
 }  // namespace scree::cli

@@ -37,7 +37,7 @@ public:
     CloudSettings cloud;
     cloud.points = 600'000 + Random(seed).index(400'001);
     detector_.detect(reconstructed_cloud(terrain, cloud, seed), unused_);
-    return label_clusters(detector_, terrain, obstacle_ids(terrain));
+    return label_clusters(detector_, terrain.features(), obstacle_ids(terrain));
   }
 
 private:
@@ -75,7 +75,7 @@ public:
     }
     visibility.end_sweep();
     pipeline_.process(sweep_);
-    return label_clusters(pipeline_.detector(), terrain, visibility.seen());
+    return label_clusters(pipeline_.detector(), terrain.features(), visibility.seen());
   }
 
 private:

@@ -14,7 +14,7 @@ bool covers(const TerrainFeature& feature, const Eigen::Vector2d& point) {
 
 /// The feature that a cluster belongs to, null for none.
 const TerrainFeature* feature_of(const Cluster& cluster, const Detector& detector,
-                                 const std::vector<TerrainFeature>& features) {
+                                 std::span<const TerrainFeature> features) {
   const Eigen::Vector2d middle(static_cast<double>(cluster.box.center_x),
                                static_cast<double>(cluster.box.center_y));
   for (const TerrainFeature& feature : features) {
@@ -38,14 +38,14 @@ Label label_of(const TerrainFeature* feature) {
 
 }  // namespace
 
-LabelledClusters label_clusters(const Detector& detector, const Terrain& terrain,
+LabelledClusters label_clusters(const Detector& detector, std::span<const TerrainFeature> features,
                                 std::span<const int> asked) {
   LabelledClusters labelled;
   labelled.obstacles = asked.size();
   std::vector<bool> has_cluster(Terrain::kMostFeatures + 1);
   for (const Cluster& cluster : detector.clusters().all()) {
     if (!std::ranges::all_of(cluster.features, [](float f) { return std::isfinite(f); })) continue;
-    const TerrainFeature* feature = feature_of(cluster, detector, terrain.features());
+    const TerrainFeature* feature = feature_of(cluster, detector, features);
     labelled.samples.push_back({cluster.features, label_of(feature)});
     if (feature != nullptr) has_cluster[static_cast<std::size_t>(feature->id)] = true;
   }

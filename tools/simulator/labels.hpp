@@ -17,12 +17,12 @@ struct LabelledClusters {
   std::size_t found = 0;      ///< of them those with a cluster
 };
 
-/// Names the truth of each cluster of the detector's last cloud, which must lie in the terrain's
-/// frame: the feature whose footprint, grown by 0.15 m, covers the middle of the cluster's box or
-/// at least half of its points. Clusters whose features are not finite are left out.
+/// Names the truth of each cluster of the detector's last cloud, which must lie in the frame of
+/// the features: the feature whose footprint, grown by 0.15 m, covers the middle of the cluster's
+/// box or at least half of its points. Clusters whose features are not finite are left out.
 /// @param asked ids of the features that count as obstacles asked for; other features still give
 /// their clusters a label
-LabelledClusters label_clusters(const Detector& detector, const Terrain& terrain,
+LabelledClusters label_clusters(const Detector& detector, std::span<const TerrainFeature> features,
                                 std::span<const int> asked);
 
 }  // namespace scree

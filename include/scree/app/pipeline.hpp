@@ -26,12 +26,15 @@ public:
   const Detector& detector() const { return detector_; }
   /// Points of the last sweep in `base`, as the detector got them.
   const PointCloud& ground() const { return ground_; }
+  /// Of the last sweep, as the detector counts; points that did not get to it are dropped ones.
+  StageCounts counts() const;
 
 private:
   void move_to_base(const Sweep& sweep);
 
   LidarSettings lidar_;
   PointCloud ground_;
+  std::size_t dropped_ = 0;
   Detector detector_;
   ObstacleList list_;
 };

@@ -30,6 +30,9 @@ void for_each_detect_key(std::string_view table, Detect& detect, Visit&& visit) 
       "thin the cloud to the centroid of each occupied voxel first");
   key("leaf_size", detect.leaf_size, "m", 0.001, 10,
       "edge of a voxel: larger is faster and smoother, smaller keeps small obstacles");
+  key("clearance", detect.clearance, "m", 0, 100,
+      "points higher than this above the lowest of their column are passed under and go (branches, "
+      "ceilings); 0 keeps all");
   key("kernel_spacing", detect.kernel_spacing, "m", 0.001, 10,
       "d of the Sobel operator: distance of the eight positions around a point (paper fig. 3)");
   key("kernel_radius", detect.kernel_radius, "m", 0.001, 10,
@@ -95,9 +98,6 @@ void for_each_key(AnySettings& settings, Visit&& visit) {
       "rotation lidar -> base: roll, pitch, yaw, applied as Rz(yaw) Ry(pitch) Rx(roll)");
   key("min_range", lidar.min_range, "m", 0, 200, "returns closer than this are the robot itself");
   key("max_range", lidar.max_range, "m", 0.1, 200, "returns beyond this are not used");
-  key("clearance", lidar.clearance, "m", 0.1, 100,
-      "points higher than this above base are passed under (branches, ceilings); grows by a third "
-      "of the distance, for slopes");
   key("cut_azimuth_deg", lidar.cut_azimuth_deg, "deg", 0, 359.99,
       "azimuth at which a sweep ends and the next begins");
 

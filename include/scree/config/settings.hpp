@@ -59,7 +59,6 @@ struct LidarSettings {
   Eigen::Vector3d rpy_deg{0, 0, 0};
   double min_range = 0.5;
   double max_range = 30.0;
-  double clearance = 2.0;
   double cut_azimuth_deg = 0.0;
 
   /// `lidar` in `base`.
@@ -96,6 +95,7 @@ struct DetectSettings {
 
   bool voxel_grid = true;
   double leaf_size = 0.0592;
+  double clearance = 2.0;
 
   double kernel_spacing = 0.10;
   double kernel_radius = 0.11;

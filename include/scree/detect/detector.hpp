@@ -10,6 +10,7 @@
 #include "scree/detect/euclidean_clusters.hpp"
 #include "scree/detect/ground_height.hpp"
 #include "scree/detect/network.hpp"
+#include "scree/detect/overhangs.hpp"
 #include "scree/detect/plane_cells.hpp"
 #include "scree/detect/supervoxels.hpp"
 #include "scree/detect/suppression.hpp"
@@ -25,6 +26,7 @@ struct StageCounts {
   std::size_t dropped = 0;            ///< beyond max_points
   std::size_t refused = 0;            ///< not finite, or too far out for the cells
   std::size_t voxels = 0;             ///< after the voxel grid
+  std::size_t below_clearance = 0;    ///< without what the robot passes under
   std::size_t known = 0;              ///< with a gradient
   std::size_t edges = 0;              ///< steeper than the threshold
   std::size_t edges_dropped = 0;      ///< beyond max_edge_points
@@ -73,6 +75,7 @@ private:
 
   VoxelGrid voxel_grid_;
   PointCloud thinned_;
+  Overhangs overhangs_;
   ElevationGradient gradient_;
   PlaneCells cells_;
   FixedVector<float> slope_x_, slope_y_;  // of the sorted points of cells_

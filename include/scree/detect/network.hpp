@@ -48,7 +48,10 @@ public:
   using Outputs = std::array<double, kOutputs>;
   using Forms = std::array<InputForm, kInputs>;
 
-  /// Heights enter raw, counts as logarithms.
+  /// Heights enter raw, counts as logarithms. Measured on held-out clouds the two forms of the
+  /// counts cannot be told apart: F1 0.983 as logarithms and 0.985 raw at the density trained on,
+  /// 0.90 both at a third of it. The logarithm is taken because it grows least beyond what was
+  /// trained.
   static constexpr Forms kDefaultForms = {InputForm::raw, InputForm::raw, InputForm::raw,
                                           InputForm::log1p, InputForm::log1p};
 

@@ -3,6 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
 #include "scree/config/keys.hpp"
 
 namespace scree {
@@ -65,6 +69,15 @@ TEST(Settings, DefaultFileReadsBackAndIsStable) {
   const std::string text = default_settings_toml();
   const auto settings = parse_settings(text, "default");
   ASSERT_TRUE(settings) << settings.error().message;
+}
+
+/// The shipped file is this very text; SCREE_UPDATE=1 in the environment writes it anew.
+TEST(Settings, ShippedFileIsTheDefaults) {
+  const std::string shipped = std::string(SCREE_SOURCE) + "/config/scree.toml";
+  if (std::getenv("SCREE_UPDATE") != nullptr) std::ofstream(shipped) << default_settings_toml();
+  std::ostringstream text;
+  text << std::ifstream(shipped).rdbuf();
+  EXPECT_EQ(text.str(), default_settings_toml());
 }
 
 TEST(Settings, DefaultsLieInTheirRanges) {

@@ -213,6 +213,23 @@ TEST(Detector, WorksAtTheRimOfItsCells) {
   }
 }
 
+TEST(Detector, PassesUnderWhatHangsHighAboveTheGround) {
+  // A ceiling over everything, a branch over the bump, and two stray points far below the ground.
+  const PointCloud cloud = test::bump_and_bowl(40'000);
+  PointCloud covered(60'000);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    covered.push_back(cloud.x[i], cloud.y[i], cloud.z[i], 0);
+    if (i % 4 == 0) covered.push_back(cloud.x[i], cloud.y[i], cloud.z[i] + 2.6F, 0);
+  }
+  covered.push_back(test::kBumpX, 0.1F, -3, 0);
+  covered.push_back(test::kBumpX, 0.3F, -4, 0);
+  EXPECT_EQ(detect(covered).obstacles.size(), 2U);
+  DetectSettings settings = small();
+  settings.clearance = 0;
+  EXPECT_EQ(detect(covered, settings).counts.below_clearance,
+            detect(covered, settings).counts.voxels);
+}
+
 TEST(Detector, CountsWhatDoesNotFit) {
   const PointCloud cloud = test::bump_and_bowl(60'000);
   DetectSettings settings = small();

@@ -80,7 +80,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"Vlp16Dual", LidarModel::vlp16, ReturnMode::dual, 10},
                     Case{"Vlp16Last20Hz", LidarModel::vlp16, ReturnMode::last, 20},
                     Case{"HiRes5Hz", LidarModel::puck_hires, ReturnMode::strongest, 5}),
-    [](const testing::TestParamInfo<Case>& named) { return named.param.name; });
+    [](const testing::TestParamInfo<Case>& which) { return which.param.name; });
 
 TEST(SimulatedLidar, PositionPacketCarriesTheTimeOfDay) {
   TerrainSettings terrain_settings;

@@ -1,0 +1,192 @@
+"""scree detect as a program: python3 detect_test.py SCREE DATA [TEST ...]"""
+
+import json
+import math
+import os
+import random
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+SCREE, DATA = sys.argv[1:3]
+KEYS = ["id", "kind", "confidence", "center", "extent", "yaw", "height", "points"]
+
+
+class DetectTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def scree(self, *arguments, code=0):
+        done = subprocess.run([SCREE, *arguments], capture_output=True, text=True, timeout=250)
+        self.assertEqual(done.returncode, code, done.stderr)
+        return done
+
+    def detect(self, source, *arguments):
+        """The lists, as objects, of `scree detect`."""
+        self.scree("detect", source, "--out", self.path("lists.jsonl"), *arguments)
+        with open(self.path("lists.jsonl")) as file:
+            return [json.loads(line) for line in file]
+
+    def simulated_cloud(self):
+        cloud = self.path("cloud.pcd")
+        if not os.path.exists(cloud):
+            self.scree("simulate", "--cloud", cloud, "--seed", "5", "--points", "900000")
+        return cloud
+
+    def write_pcd(self, name, points, data="ascii", fields="x y z", numbers="F"):
+        """A PCD file of tuples; `numbers` gives the type letter of every field."""
+        path, count = self.path(name), len(fields.split())
+        with open(path, "wb") as file:
+            header = (
+                f"VERSION 0.7\nFIELDS {fields}\nSIZE {' '.join(['4'] * count)}\n"
+                f"TYPE {' '.join(numbers * count)}\nCOUNT {' '.join(['1'] * count)}\n"
+                f"WIDTH {len(points)}\nHEIGHT 1\nPOINTS {len(points)}\nDATA {data}\n"
+            )
+            file.write(header.encode())
+            for point in points:
+                text = " ".join(repr(value) for value in point) + "\n"
+                file.write(text.encode() if data == "ascii" else struct.pack(f"<{count}f", *point))
+        return path
+
+    def check_list(self, obstacle_list):
+        self.assertEqual(list(obstacle_list), ["stamp_ns", "pose", "obstacles"])
+        for number, obstacle in enumerate(obstacle_list["obstacles"]):
+            self.assertEqual(list(obstacle), KEYS)
+            self.assertEqual(obstacle["id"], number + 1)
+            self.assertIn(obstacle["kind"], ("positive", "negative"))
+            self.assertTrue(0 <= obstacle["confidence"] <= 1)
+            self.assertEqual((len(obstacle["center"]), len(obstacle["extent"])), (3, 3))
+            self.assertTrue(all(math.isfinite(v) for v in obstacle["center"] + obstacle["extent"]))
+
+    def test_a_cloud_gives_one_list_that_fits_its_truth(self):
+        lists = self.detect(self.simulated_cloud())
+        self.assertEqual(len(lists), 1)
+        self.check_list(lists[0])
+        self.assertEqual(lists[0]["stamp_ns"], 0)
+        self.assertEqual(lists[0]["pose"], {"p": [0, 0, 0], "q": [1, 0, 0, 0]})
+        with open(self.path("cloud.truth.json")) as file:
+            truth = json.load(file)["obstacles"]
+        found = 0
+        for wanted in truth:
+            found += any(
+                o["kind"] == wanted["kind"]
+                and math.dist(o["center"][:2], wanted["center"][:2]) < 0.7
+                for o in lists[0]["obstacles"]
+            )
+        self.assertGreaterEqual(found, 0.8 * len(truth))
+        self.assertLessEqual(len(lists[0]["obstacles"]), 1.4 * len(truth))
+
+    def test_the_same_capture_gives_the_same_bytes(self):
+        self.scree("simulate", self.path("capture"), "--seconds", "1", "--seed", "3")
+        texts = []
+        for _ in range(2):
+            lists = self.detect(self.path("capture"))
+            with open(self.path("lists.jsonl"), "rb") as file:
+                texts.append(file.read())
+        self.assertEqual(texts[0], texts[1])
+        self.assertIn(len(lists), (10, 11))
+        stamps = [each["stamp_ns"] for each in lists]
+        self.assertEqual(stamps, sorted(stamps))
+        self.assertAlmostEqual((stamps[-2] - stamps[0]) / (len(stamps) - 2), 1e8, delta=1e6)
+        for each in lists:
+            self.check_list(each)
+        self.assertTrue(any(each["obstacles"] for each in lists))
+        printed = self.scree("detect", self.path("capture")).stdout
+        self.assertEqual(printed.encode(), texts[0])
+
+    def test_stages_are_written_and_counted(self):
+        done = self.scree("detect", self.simulated_cloud(), "--out", self.path("l.jsonl"),
+                          "--stages", self.path("stages"))  # fmt: skip
+        counts = [int(word) for word in done.stdout.split() if word.isdigit()]
+        self.assertEqual(counts[0], 900000)
+        self.assertEqual(counts[:5], sorted(counts[:5], reverse=True))
+        names = sorted(os.listdir(self.path("stages")))
+        self.assertEqual(names[0], "0_input.pcd")
+        self.assertEqual(names[-1], "7_clusters.pcd")
+        self.assertEqual(len(names), 8)
+        # A stage's cloud is a cloud like any other.
+        self.detect(self.path("stages/1_voxel_grid.pcd"))
+
+    def test_every_kind_of_pcd_is_read(self):
+        draw = random.Random(1)
+        points = []
+        for _ in range(30000):
+            x, y = draw.uniform(-4, 4), draw.uniform(-4, 4)
+            height = 0.5 if math.hypot(x - 1, y) < 0.4 else 0.0
+            points.append((x, y, height + draw.gauss(0, 0.004), 30.0))
+        bare = [point[:3] for point in points]
+        lists = [
+            self.detect(self.write_pcd("a.pcd", points, fields="x y z intensity")),
+            self.detect(self.write_pcd("b.pcd", points, "binary", fields="x y z intensity")),
+            self.detect(self.write_pcd("c.pcd", bare)),
+            self.detect(self.write_pcd("d.pcd", bare, "binary")),
+        ]
+        for each in lists:
+            self.assertEqual([o["kind"] for o in each[0]["obstacles"]], ["positive"])
+            self.assertLess(math.dist(each[0]["obstacles"][0]["center"][:2], (1, 0)), 0.3)
+
+    def test_clouds_with_hardly_anything_are_no_failure(self):
+        nan, inf = math.nan, math.inf
+        for name, points in {
+            "empty": [],
+            "one": [(1.0, 2.0, 3.0)],
+            "equal": [(1.0, 2.0, 3.0)] * 5000,
+            "broken": [(nan, 0.0, 0.0), (inf, 0.0, 0.0), (0.0, -inf, 0.0), (3e38, 0.0, 1e30)] * 50,
+        }.items():
+            for data in ("ascii", "binary"):
+                lists = self.detect(self.write_pcd(f"{name}.pcd", points, data))
+                self.assertEqual([each["obstacles"] for each in lists], [[]], name)
+
+    def test_failures_are_one_sentence_and_exit_1(self):
+        garbled = self.path("garbled.pcd")
+        with open(garbled, "wb") as file:
+            file.write(random.Random(2).randbytes(5000))
+        cut = self.write_pcd("cut.pcd", [(1.0, 2.0, 3.0)] * 1000, "binary")
+        os.truncate(cut, 2000)
+        foreign = self.path("foreign.pcap")
+        with open(foreign, "wb") as file:
+            file.write(b"this is no capture")
+        config = self.path("bad.toml")
+        with open(config, "w") as file:
+            file.write("[detect.cloud]\nnetwork = 'none.txt'\n")
+        for arguments in ([garbled], [cut], [foreign], [self.simulated_cloud(), "--config", config]):
+            said = self.scree("detect", *arguments, "--out", self.path("l.jsonl"), code=1).stderr
+            self.assertEqual(len(said.splitlines()), 1, said)
+        self.scree("detect", self.simulated_cloud(), "--out", "/dev/full", code=1)
+        self.scree("detect", self.simulated_cloud(), "--out", self.path("no/such/l.jsonl"), code=1)
+
+    def test_wrong_usage_exits_2(self):
+        self.scree("detect", code=2)
+        self.scree("detect", self.path("missing.pcd"), code=2)
+        self.scree("detect", "--no-such-option", code=2)
+
+    def test_recordings_give_a_list_a_sweep(self):
+        sweeps = {
+            "vlp16/indoor_10hz.pcap": 14,
+            "vlp16/indoor_20hz.pcap": 52,
+            "vlp16/indoor_dual_return.pcap": 5,
+            "captures/interop": 81,
+        }
+        if not os.path.isdir(DATA):
+            self.skipTest(f"the real recordings are not at {DATA}")
+        for name, count in sweeps.items():
+            lists = self.detect(os.path.join(DATA, name))
+            self.assertEqual(len(lists), count, name)
+            for each in lists:
+                self.check_list(each)
+        for name in ("clouds/offroad_marv.pcd", "clouds/offroad_husky.pcd"):
+            self.check_list(self.detect(os.path.join(DATA, name))[0])
+        foreign = os.path.join(DATA, "vlp16/not_a_vlp16.pcap")
+        said = self.scree("detect", foreign, code=1).stderr
+        self.assertIn("refused", said)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1] + sys.argv[3:])
