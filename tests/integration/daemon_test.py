@@ -105,8 +105,8 @@ class DaemonTest(unittest.TestCase):
         self.read_until(health.stdout, "BLIND")
         replay = self.start(*self.replay("--loop"))
         self.read_until(health.stdout, "health ok")
-        output, _ = lists.communicate(timeout=PATIENCE)
-        self.assertEqual(lists.returncode, 0)
+        output, complaint = lists.communicate(timeout=PATIENCE)
+        self.assertEqual(lists.returncode, 0, complaint)
         stamps = []
         for line in output.splitlines():
             found = json.loads(line)
