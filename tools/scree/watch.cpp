@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <lcm/lcm-cpp.hpp>
 #include <memory>
 #include <string>
 
@@ -9,8 +8,7 @@
 #include "scree/config/settings.hpp"
 #include "scree/publish/jsonl.hpp"
 #include "scree/publish/messages.hpp"
-#include "scree/publish/multicast.hpp"
-#include "scree/publish/publisher.hpp"
+#include "scree/publish/subscriber.hpp"
 #include "watch_text.hpp"
 
 namespace scree::cli {
@@ -38,12 +36,12 @@ class Watcher {
 public:
   explicit Watcher(const Options& options) : json_(options.json), pause_(options.every) {}
 
-  void take_list(const lcm::ReceiveBuffer*, const std::string&, const obstacle_list_t* message) {
+  void take_list(const obstacle_list_t& message) {
     ++lists_;
     const auto now = Clock::now();
     if (now < next_) return;
     next_ = now + std::chrono::duration_cast<Clock::duration>(pause_);
-    from_message(*message, list_);
+    from_message(message, list_);
     text_.clear();
     if (json_) {
       append_json_line(list_, text_);
@@ -52,11 +50,11 @@ public:
     }
     print();
   }
-  void take_health(const lcm::ReceiveBuffer*, const std::string&, const health_t* message) {
+  void take_health(const health_t& message) {
     ++healths_;
     if (json_) return;
     text_.clear();
-    append_text(*message, text_);
+    append_text(message, text_);
     print();
   }
 
@@ -101,19 +99,18 @@ std::string nothing_came(const Options& options, const Watcher& watcher, const s
 
 void watch(const Options& options) {
   const std::string url = url_of(options);
-  if (const auto routed = check_multicast(url); !routed) throw Failure(routed.error().message);
-  lcm::LCM lcm(url);
-  if (!lcm.good()) throw Failure("LCM cannot open " + url);
   Watcher watcher(options);
-  lcm.subscribe(kObstaclesChannel, &Watcher::take_list, &watcher);
-  lcm.subscribe(kHealthChannel, &Watcher::take_health, &watcher);
+  const auto subscriber = Subscriber::open(
+      url, [&](const obstacle_list_t& list) { watcher.take_list(list); },
+      [&](const health_t& health) { watcher.take_health(health); });
+  if (!subscriber) throw Failure(subscriber.error().message);
 
   const bool ends = options.seconds > 0;
   const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                       std::chrono::duration<double>(ends ? options.seconds : 0));
   const auto is_enough = [&] { return options.count > 0 && watcher.lists() >= options.count; };
   while (!is_enough() && (!ends || Clock::now() < end)) {
-    if (lcm.handleTimeout(ends ? milliseconds_until(end) : 1000) < 0) {
+    if (!(*subscriber)->handle(ends ? milliseconds_until(end) : 1000)) {
       throw Failure("LCM stopped receiving on " + url);
     }
     if (watcher.has_failed()) throw Failure("cannot write to standard output");

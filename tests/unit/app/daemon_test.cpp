@@ -8,11 +8,10 @@
 
 #include <atomic>
 #include <chrono>
-#include <lcm/lcm-cpp.hpp>
 #include <thread>
 
 #include "scree/core/descriptor.hpp"
-#include "scree/publish/publisher.hpp"
+#include "scree/publish/subscriber.hpp"
 #include "unit/free_port.hpp"
 #include "unit/velodyne/packet_builder.hpp"
 
@@ -54,9 +53,19 @@ private:
 /// What comes on LCM.
 class Listener {
 public:
-  explicit Listener(const std::string& url) : lcm_(url) {
-    lcm_.subscribe(kObstaclesChannel, &Listener::take_list, this);
-    lcm_.subscribe(kHealthChannel, &Listener::take_health, this);
+  explicit Listener(const std::string& url) {
+    auto opened = Subscriber::open(
+        url,
+        [this](const obstacle_list_t& message) {
+          list = message;
+          ++lists;
+        },
+        [this](const health_t& message) {
+          health = message;
+          ++healths;
+        });
+    EXPECT_TRUE(opened) << opened.error().message;
+    subscriber_ = std::move(*opened);
   }
   /// Receives until the condition holds; false after a minute.
   template <class Condition>
@@ -64,7 +73,7 @@ public:
     const auto end = Clock::now() + std::chrono::minutes(1);
     while (!condition()) {
       if (Clock::now() > end) return false;
-      lcm_.handleTimeout(1000);
+      subscriber_->handle(1000);
     }
     return true;
   }
@@ -74,15 +83,7 @@ public:
   health_t health{};
 
 private:
-  void take_list(const lcm::ReceiveBuffer*, const std::string&, const obstacle_list_t* message) {
-    list = *message;
-    ++lists;
-  }
-  void take_health(const lcm::ReceiveBuffer*, const std::string&, const health_t* message) {
-    health = *message;
-    ++healths;
-  }
-  lcm::LCM lcm_;
+  std::unique_ptr<Subscriber> subscriber_;
 };
 
 class DaemonTest : public ::testing::Test {

@@ -3,12 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <functional>
-#include <lcm/lcm-cpp.hpp>
+#include <memory>
+#include <optional>
 
 #include "scree/publish/jsonl.hpp"
 #include "scree/publish/messages.hpp"
 #include "scree/publish/multicast.hpp"
+#include "scree/publish/subscriber.hpp"
 #include "unit/free_port.hpp"
 
 namespace scree {
@@ -42,34 +43,36 @@ std::string json(const ObstacleList& list) {
   return text;
 }
 
-/// Receives one message of a type, or fails after ten seconds.
-template <class Message>
+/// Receives the next message of either type, or fails after ten seconds.
 class Receiver {
 public:
-  Receiver(const std::string& url, const std::string& channel) : lcm_(url) {
-    lcm_.subscribe(channel, &Receiver::take, this);
+  explicit Receiver(const std::string& url) {
+    auto opened = Subscriber::open(
+        url, [this](const obstacle_list_t& message) { list_ = message; },
+        [this](const health_t& message) { health_ = message; });
+    EXPECT_TRUE(opened) << opened.error().message;
+    subscriber_ = std::move(*opened);
   }
-  Message next() {
-    arrived_ = false;
-    while (!arrived_ && lcm_.handleTimeout(10000) > 0) {
-    }
-    EXPECT_TRUE(arrived_);
-    return message_;
-  }
+  obstacle_list_t next_list() { return next(list_); }
+  health_t next_health() { return next(health_); }
 
 private:
-  void take(const lcm::ReceiveBuffer*, const std::string&, const Message* message) {
-    message_ = *message;
-    arrived_ = true;
+  template <class Message>
+  Message next(std::optional<Message>& message) {
+    message.reset();
+    for (int second = 0; second < 10 && !message; ++second) subscriber_->handle(1000);
+    EXPECT_TRUE(message);
+    return message.value_or(Message{});
   }
-  lcm::LCM lcm_;
-  Message message_{};
-  bool arrived_ = false;
+
+  std::unique_ptr<Subscriber> subscriber_;
+  std::optional<obstacle_list_t> list_;
+  std::optional<health_t> health_;
 };
 
 TEST(Publisher, ListsComeThroughUnchanged) {
   const std::string url = free_lcm_url();
-  Receiver<obstacle_list_t> receiver(url, kObstaclesChannel);
+  Receiver receiver(url);
   auto publisher = Publisher::open(url, 1000);
   ASSERT_TRUE(publisher) << publisher.error().message;
   // 1000 obstacles do not fit in one datagram: LCM sends them in fragments.
@@ -77,14 +80,14 @@ TEST(Publisher, ListsComeThroughUnchanged) {
     const ObstacleList sent = list_of(size);
     ASSERT_TRUE(publisher->publish(sent));
     ObstacleList received;
-    from_message(receiver.next(), received);
+    from_message(receiver.next_list(), received);
     EXPECT_EQ(json(received), json(sent));
   }
 }
 
 TEST(Publisher, HealthComesThrough) {
   const std::string url = free_lcm_url();
-  Receiver<health_t> receiver(url, kHealthChannel);
+  Receiver receiver(url);
   auto publisher = Publisher::open(url, 1);
   ASSERT_TRUE(publisher) << publisher.error().message;
   health_t health{};
@@ -95,7 +98,7 @@ TEST(Publisher, HealthComesThrough) {
   health.lidar.reasons = 2;
   health.detector_time.p99_ms = 12.5;
   ASSERT_TRUE(publisher->publish(health));
-  const health_t received = receiver.next();
+  const health_t received = receiver.next_health();
   EXPECT_EQ(received.reason, health.reason);
   EXPECT_EQ(received.lidar.refused_reason, health.lidar.refused_reason);
   EXPECT_EQ(received.lidar.refused, health.lidar.refused);

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <lcm/lcm.h>
+
+#include <functional>
+#include <memory>
+#include <scree/health_t.hpp>
+#include <scree/obstacle_list_t.hpp>
+#include <string>
+
+#include "scree/core/result.hpp"
+
+namespace scree {
+
+/// Receives what a Publisher sends. One thread may use it.
+class Subscriber {
+public:
+  /// Called from handle(); must not throw, because LCM, which is C, lies between.
+  using OnList = std::function<void(const obstacle_list_t&)>;
+  using OnHealth = std::function<void(const health_t&)>;
+
+  /// Listens from here on; the error says what to do where multicast has no route.
+  static Result<std::unique_ptr<Subscriber>> open(const std::string& lcm_url, OnList on_list,
+                                                  OnHealth on_health);
+
+  /// Waits for one message, at most so long, and has it handled. False when LCM failed.
+  bool handle(int milliseconds);
+
+private:
+  struct Destroy {
+    void operator()(lcm_t* lcm) const { lcm_destroy(lcm); }
+  };
+  Subscriber(lcm_t* lcm, OnList on_list, OnHealth on_health);
+  template <class Message, class Handler, Handler Subscriber::*handler>
+  static void take(const lcm_recv_buf_t* buffer, const char* channel, void* subscriber);
+
+  std::unique_ptr<lcm_t, Destroy> lcm_;
+  OnList on_list_;
+  OnHealth on_health_;
+};
+
+}  // namespace scree
