@@ -32,12 +32,13 @@ std::optional<unsigned> pair(std::string_view text, std::size_t offset) {
 
 /// hhmmss[.sss] and ddmmyy; the century is that of the VLP-16.
 std::optional<std::int64_t> utc_ns(std::string_view time, std::string_view date) {
-  using namespace std::chrono;
+  namespace chrono = std::chrono;
   const auto h = pair(time, 0), m = pair(time, 2), s = pair(time, 4);
   const auto day_of = pair(date, 0), month_of = pair(date, 2), year_of = pair(date, 4);
   if (!h || !m || !s || !day_of || !month_of || !year_of || date.size() != 6) return std::nullopt;
   if (*h > 23 || *m > 59 || *s > 60) return std::nullopt;
-  const year_month_day ymd(year(2000 + static_cast<int>(*year_of)), month(*month_of), day(*day_of));
+  const chrono::year_month_day ymd(chrono::year(2000 + static_cast<int>(*year_of)),
+                                   chrono::month(*month_of), chrono::day(*day_of));
   if (!ymd.ok()) return std::nullopt;
   std::int64_t fraction_ns = 0;
   if (time.size() > 6) {
@@ -45,8 +46,9 @@ std::optional<std::int64_t> utc_ns(std::string_view time, std::string_view date)
     if (!fraction || !(*fraction >= 0.0 && *fraction < 1.0)) return std::nullopt;
     fraction_ns = static_cast<std::int64_t>(*fraction * 1e9);
   }
-  const auto whole = sys_days(ymd).time_since_epoch() + hours(*h) + minutes(*m) + seconds(*s);
-  return nanoseconds(whole).count() + fraction_ns;
+  const auto whole = chrono::sys_days(ymd).time_since_epoch() + chrono::hours(*h) +
+                     chrono::minutes(*m) + chrono::seconds(*s);
+  return chrono::nanoseconds(whole).count() + fraction_ns;
 }
 
 /// Degrees and minutes as one number (ddmm.mmmm) with the letter of the half sphere.

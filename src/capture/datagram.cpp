@@ -91,7 +91,7 @@ FrameKind parse_frame(int link_type, Bytes frame, std::size_t original_size, Dat
   Bytes ip = *network;
   if (ip.size() < 20) return broken;
   if (ip[0] >> 4 != 4 || ip[9] != kProtocolUdp) return FrameKind::other;
-  const std::size_t ip_header = 4U * (ip[0] & 0x0F), ip_size = network_u16(ip, 2);
+  const std::size_t ip_header = (ip[0] & std::size_t{0x0F}) * 4, ip_size = network_u16(ip, 2);
   if (ip_header < 20) return FrameKind::other;
   // More fragments to come, or an offset into the datagram.
   if ((network_u16(ip, 6) & 0x3FFF) != 0) return FrameKind::fragment;

@@ -112,15 +112,17 @@ Result<std::vector<PcdField>> read_fields(const Lines& lines) {
     const std::string_view type = (*words_of("TYPE"))[i];
     const auto size = number((*words_of("SIZE"))[i]);
     const auto count = words_of("COUNT") == nullptr ? 1 : number((*words_of("COUNT"))[i]);
-    const bool whole = type == "I" || type == "U";
-    const bool known = whole ? size == 1 || size == 2 || size == 4 || size == 8
-                             : type == "F" && (size == 4 || size == 8);
+    const char kind = type.size() == 1 ? type[0] : '?';
+    const bool whole = kind == 'I' || kind == 'U';
+    const std::size_t bytes = size.value_or(0);
+    const bool known =
+        (bytes == 4 || bytes == 8) ? whole || kind == 'F' : whole && (bytes == 1 || bytes == 2);
     if (!known || !count || *count < 1 || *count > kMostCount) {
       return fail(
           fmt::format("has a field {} of a bad type, size or count", (*names)[i].substr(0, 40)));
     }
-    fields.push_back({std::string((*names)[i]), type[0], *size, *count, offset});
-    offset += *size * *count;
+    fields.push_back({std::string((*names)[i]), kind, bytes, *count, offset});
+    offset += bytes * *count;
   }
   return fields;
 }

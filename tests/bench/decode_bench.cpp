@@ -15,7 +15,7 @@ void decode_packet(benchmark::State& state, ReturnMode mode) {
   }
   const PacketDecoder decoder(LidarModel::vlp16);
   Shots shots;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     benchmark::DoNotOptimize(check_data_packet(packet.bytes(), LidarModel::vlp16));
     decoder.decode(packet.bytes(), shots);
     benchmark::DoNotOptimize(shots);

@@ -38,7 +38,7 @@ Frame ip_packet(std::uint8_t options = 0) {
               255,
               255,
               255};
-  ip.insert(ip.end(), 4U * options, 1);
+  ip.insert(ip.end(), std::size_t{4} * options, 1);
   return ip + Frame{0x01, 0xBB, 0x09, 0x40, 0, 11, 0, 0, 1, 2, 3};
 }
 

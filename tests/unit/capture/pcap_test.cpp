@@ -152,7 +152,8 @@ TEST(Pcap, ReadsBothByteOrdersAndPrecisionsAndPcapng) {
       append(bytes, frame.size(), 4, big), append(bytes, frame.size(), 4, big);
       const Read read = read_all(folder.write("file.pcap", bytes + frame));
       ASSERT_EQ(read.arrival_ns.size(), 1U) << read.error << read.broken_off;
-      EXPECT_EQ(read.arrival_ns[0], 1'598'612'523'000'000'000 + 123'456 * (nano ? 1 : 1000));
+      EXPECT_EQ(read.arrival_ns[0],
+                1'598'612'523'000'000'000 + std::int64_t{123'456} * (nano ? 1 : 1000));
     }
     std::string bytes;
     const auto block = [&](std::uint32_t type, const std::string& body) {

@@ -54,7 +54,7 @@ void expect_equal(const PointCloud& a, const PointCloud& b) {
 
 TEST(Pcd, WhatIsWrittenReadsBack) {
   const TemporaryFolder folder;
-  for (const std::size_t size : {0, 1, 1000}) {
+  for (const std::size_t size : {0U, 1U, 1000U}) {
     const PointCloud cloud = sample(size);
     ASSERT_TRUE(write_pcd(folder / "cloud.pcd", cloud));
     const auto read = read_pcd(folder / "cloud.pcd");

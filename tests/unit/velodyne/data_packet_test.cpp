@@ -65,6 +65,7 @@ void expect_agrees(const Shots& shots, const std::vector<double>& azimuths,
 
 std::vector<double> turned(double first, double step, bool dual) {
   std::vector<double> azimuths;
+  azimuths.reserve(12);
   for (int block = 0; block < 12; ++block) {
     azimuths.push_back(std::fmod(first + step * (dual ? block / 2 : block), 360.0));
   }
@@ -204,7 +205,7 @@ TEST(CheckDataPacket, NamesEveryReason) {
   };
   const PacketBuilder good;
   EXPECT_EQ(check(good), Refusal::none);
-  for (const std::size_t size : {0, 1, 512, 1205}) {
+  for (const std::size_t size : {0U, 1U, 512U, 1205U}) {
     EXPECT_EQ(check_data_packet(Bytes(good.bytes()).first(size), LidarModel::vlp16), Refusal::size);
   }
   std::vector<std::uint8_t> longer(good.bytes().begin(), good.bytes().end());

@@ -23,7 +23,7 @@ struct Seen {
 /// A VLP-16 that turns evenly and sees a wall 5 m away, and the stream that listens to it.
 class Sensor {
 public:
-  explicit Sensor(LidarSettings settings = {})
+  explicit Sensor(const LidarSettings& settings = {})
       : stream_(std::make_unique<LidarStream>(settings, [this](Sweep& sweep) {
           seen.push_back({sweep.end_ns + (sweep.points.empty() ? 0 : sweep.time_ns[0]),
                           sweep.end_ns, sweep.points.size(), sweep.packets});
@@ -170,7 +170,8 @@ TEST(LidarStream, RunsOnAcrossTheFullHourWithAndWithoutLoss) {
     for (std::size_t i = 1; i < sensor.seen.size(); ++i) {
       EXPECT_GT(sensor.seen[i].end_ns, sensor.seen[i - 1].end_ns);
     }
-    const std::int64_t last_shot = kEpoch + sensor.elapsed_ns() - kFiringNs + 15 * kShotNs;
+    const std::int64_t last_shot =
+        kEpoch + sensor.elapsed_ns() - kFiringNs + std::int64_t{15} * kShotNs;
     EXPECT_NEAR(static_cast<double>(sensor.seen.back().end_ns - sensor.delay_ns - last_shot), 0,
                 2e3);
   }
