@@ -21,6 +21,8 @@ void* counted(std::size_t size) {
 
 }  // namespace
 
+// The compiler sees the malloc inside new, but not that the delete beside it is its match.
+#pragma GCC diagnostic ignored "-Wmismatched-new-delete"
 void* operator new(std::size_t size) {
   return counted(size);
 }
