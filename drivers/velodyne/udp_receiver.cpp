@@ -128,10 +128,4 @@ std::optional<ReceivedDatagram> UdpReceiver::receive(std::span<std::uint8_t> buf
   }
 }
 
-std::string ipv4_text(std::uint32_t address) {
-  const in_addr network{htonl(address)};
-  char text[INET_ADDRSTRLEN];
-  return inet_ntop(AF_INET, &network, text, sizeof text);
-}
-
 }  // namespace scree

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 
+#include "scree/core/ipv4.hpp"
+
 namespace scree {
 namespace {
 

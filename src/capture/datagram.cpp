@@ -63,11 +63,6 @@ std::optional<Bytes> network_layer(int link_type, Bytes frame) {
 
 }  // namespace
 
-std::string address_text(std::uint32_t address) {
-  return fmt::format("{}.{}.{}.{}", address >> 24, address >> 16 & 0xFF, address >> 8 & 0xFF,
-                     address & 0xFF);
-}
-
 bool is_network_link(int link_type) {
   switch (link_type) {
     case DLT_EN10MB:

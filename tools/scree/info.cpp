@@ -10,6 +10,7 @@
 
 #include "commands.hpp"
 #include "lidar_capture.hpp"
+#include "scree/core/ipv4.hpp"
 #include "scree/drivers/velodyne/position_packet.hpp"
 
 namespace scree::cli {
@@ -80,8 +81,7 @@ Json ports_json(const LidarCapture& capture) {
   for (const auto& [port, traffic] : capture.ports()) {
     Json entry = {{"port", port}, {"datagrams", traffic.datagrams}};
     for (const auto& [size, count] : traffic.sizes) entry["sizes"][std::to_string(size)] = count;
-    for (const auto& [sender, count] : traffic.senders)
-      entry["senders"][address_text(sender)] = count;
+    for (const auto& [sender, count] : traffic.senders) entry["senders"][ipv4_text(sender)] = count;
     ports.push_back(std::move(entry));
   }
   return ports;

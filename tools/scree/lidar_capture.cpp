@@ -7,6 +7,7 @@
 
 #include "commands.hpp"
 #include "scree/capture/capture.hpp"
+#include "scree/core/ipv4.hpp"
 
 namespace scree::cli {
 namespace {
@@ -54,8 +55,7 @@ void LidarCapture::play(LidarStream& stream, const OnDatagram& on_other) {
     ++traffic.datagrams;
     ++traffic.sizes[datagram.payload.size()];
     ++traffic.senders[datagram.source];
-    const bool wanted =
-        settings_.sender.empty() || address_text(datagram.source) == settings_.sender;
+    const bool wanted = settings_.sender.empty() || ipv4_text(datagram.source) == settings_.sender;
     if (datagram.destination_port == settings_.port && wanted) {
       stream.take(datagram.payload, datagram.arrival_ns);
     } else if (on_other) {
@@ -80,7 +80,7 @@ std::string LidarCapture::why_nothing(const LidarStream& stream) const {
       own != ports_.end()) {
     return fmt::format("{}: the {} packets to port {} come from {}, not from lidar.sender = {}",
                        name_, own->second.datagrams, settings_.port,
-                       address_text(own->second.senders.begin()->first), settings_.sender);
+                       ipv4_text(own->second.senders.begin()->first), settings_.sender);
   }
   if (ports_.empty()) {
     const FrameCounters& seen = frames();

@@ -15,9 +15,6 @@ struct Datagram {
   std::span<const std::uint8_t> payload;
 };
 
-/// An IPv4 address as people write it, 192.168.1.201.
-std::string address_text(std::uint32_t address);
-
 /// What a captured frame turned out to be.
 enum class FrameKind : std::uint8_t {
   udp,

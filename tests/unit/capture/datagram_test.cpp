@@ -6,6 +6,8 @@
 #include <random>
 #include <vector>
 
+#include "scree/core/ipv4.hpp"
+
 namespace scree {
 namespace {
 
@@ -50,7 +52,7 @@ void expect_found(int link_type, const Frame& frame) {
   SCOPED_TRACE(link_type);
   Datagram datagram;
   ASSERT_EQ(parse(link_type, frame, datagram), FrameKind::udp);
-  EXPECT_EQ(address_text(datagram.source), "192.168.1.201");
+  EXPECT_EQ(ipv4_text(datagram.source), "192.168.1.201");
   EXPECT_EQ(datagram.source_port, 443);
   EXPECT_EQ(datagram.destination_port, 2368);
   EXPECT_EQ(Frame(datagram.payload.begin(), datagram.payload.end()), (Frame{1, 2, 3}));

@@ -2,45 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
 #include <limits>
-#include <new>
 
+#include "allocation_counter.hpp"
 #include "detect/clouds.hpp"
-
-namespace {
-
-std::atomic<std::size_t> allocations{0};
-
-void* counted(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-
-}  // namespace
-
-// The compiler sees the malloc inside new, but not that the delete beside it is its match.
-#pragma GCC diagnostic ignored "-Wmismatched-new-delete"
-void* operator new(std::size_t size) {
-  return counted(size);
-}
-void* operator new[](std::size_t size) {
-  return counted(size);
-}
-void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete[](void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
-void operator delete[](void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
 
 namespace scree {
 namespace {
@@ -131,9 +96,9 @@ TEST(Detector, TwiceTheSameAndNothingAllocatedTheSecondTime) {
     Detector detector(settings, by_angles());
     FixedVector<Obstacle> first(16), second(16);
     detector.detect(cloud, first);
-    const std::size_t before = allocations;
+    const std::size_t before = test::allocations();
     detector.detect(cloud, second);
-    EXPECT_EQ(allocations, before);
+    EXPECT_EQ(test::allocations(), before);
     ASSERT_EQ(first.size(), second.size());
     for (std::size_t i = 0; i < first.size(); ++i) {
       EXPECT_EQ(first[i].center, second[i].center);

@@ -11,6 +11,8 @@
 #include <chrono>
 #include <vector>
 
+#include "scree/core/ipv4.hpp"
+
 namespace scree {
 namespace {
 

@@ -54,7 +54,4 @@ private:
   UdpCounts counts_;
 };
 
-/// "192.168.1.201" of an address in host byte order.
-std::string ipv4_text(std::uint32_t address);
-
 }  // namespace scree
