@@ -15,7 +15,8 @@ inline int free_port() {
   sockaddr_in address{};
   address.sin_family = AF_INET;
   socklen_t size = sizeof address;
-  bind(probe, reinterpret_cast<const sockaddr*>(&address), size);
+  // Should it fail, the port is 0 and the test with it.
+  static_cast<void>(bind(probe, reinterpret_cast<const sockaddr*>(&address), size));
   getsockname(probe, reinterpret_cast<sockaddr*>(&address), &size);
   close(probe);
   return ntohs(address.sin_port);

@@ -179,7 +179,8 @@ int draw_labels(Drawing& drawing, const View& view, const FixedVector<Obstacle>&
     bool is_free = false;
     for (int attempt = 0; attempt < 48 && !is_free; ++attempt) {
       const double angle = attempt * std::numbers::pi / 4;
-      const double gap = 4 + 12 * (attempt / 8);
+      const int ring = attempt / 8;
+      const double gap = 4 + 12 * ring;
       place.x =
           middle_x - place.width / 2 + std::cos(angle) * (box.width / 2 + gap + place.width / 2);
       place.y =

@@ -9,7 +9,7 @@ namespace {
 
 /// Area of the raster's cells, summed up row by row.
 std::vector<double> summed_area(const Terrain& terrain) {
-  const std::size_t cells = terrain.vertices() - 1;
+  const std::size_t cells = std::max<std::size_t>(terrain.vertices(), 2) - 1;
   const double edge = terrain.settings().cell;
   std::vector<double> sums;
   sums.reserve(cells * cells);

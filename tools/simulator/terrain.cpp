@@ -215,11 +215,13 @@ Terrain::Place Terrain::place(double x, double y) const {
 }
 
 double Terrain::bilinear(const std::vector<float>& raster, double x, double y) const {
-  const auto [index, u, v] = place(x, y);
-  const auto at = [&](std::size_t offset) { return static_cast<double>(raster[index + offset]); };
-  const double low = at(0) + u * (at(1) - at(0));
-  const double high = at(vertices_) + u * (at(vertices_ + 1) - at(vertices_));
-  return low + v * (high - low);
+  const Place at = place(x, y);
+  const auto corner = [&](std::size_t offset) {
+    return static_cast<double>(raster[at.index + offset]);
+  };
+  const double low = corner(0) + at.u * (corner(1) - corner(0));
+  const double high = corner(vertices_) + at.u * (corner(vertices_ + 1) - corner(vertices_));
+  return low + at.v * (high - low);
 }
 
 double Terrain::height(double x, double y) const {

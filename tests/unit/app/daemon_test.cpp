@@ -24,7 +24,8 @@ using Clock = std::chrono::steady_clock;
 /// A VLP-16 that turns 20 times a second, until it is destroyed.
 class Lidar {
 public:
-  explicit Lidar(int port) : thread_([this, port](std::stop_token stop) { run(stop, port); }) {}
+  explicit Lidar(int port)
+      : thread_([this, port](const std::stop_token& stop) { run(stop, port); }) {}
 
 private:
   void run(const std::stop_token& stop, int port) {

@@ -68,7 +68,8 @@ TEST(Pipeline, NothingIsAllocatedFromPacketToListAfterTheStart) {
   packet.all_shots(1250, 30);
   std::int64_t elapsed_ns = 0;
   const auto turn = [&] {
-    for (const std::size_t before = lists; lists == before;) {
+    const std::size_t before = lists;
+    while (lists == before) {
       const std::int64_t duration = velodyne::packet_duration_ns(velodyne::ReturnMode::strongest);
       packet.turn(static_cast<int>(elapsed_ns / 1000 * 36 / 100 % 36000), 40);
       packet.timestamp(static_cast<std::uint32_t>(elapsed_ns / 1000));
