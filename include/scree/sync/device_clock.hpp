@@ -15,13 +15,13 @@ namespace scree {
 /// host's clock, so that a device clock that wraps (a lidar's at the full hour) is followed over
 /// any gap; with or without a GPS time base makes no difference.
 ///
-/// What happens                                    | seen as
-/// ------------------------------------------------|------------------------------------------------
-/// delays, bursts                                  | positive residual, now and again near zero
-/// clocks that run apart                           | the estimate leaks upwards or is pushed down
-/// device restarts, or jumps (GPS lock is gained)  | residual beyond limits, host went on steadily
-/// host's clock is set                             | residual beyond limits, device went on
-/// steadily host's clock is set forward by a little         | no residual near zero for a second
+/// What happens, and how it shows:
+/// - delays and bursts: a positive residual, now and again near zero;
+/// - clocks that run apart: the estimate leaks upwards or is pushed down;
+/// - the device restarts, or jumps because GPS lock is gained: a residual beyond limits, while the
+///   host's clock went on steadily;
+/// - the host's clock is set: a residual beyond limits, while the device's clock went on steadily;
+/// - the host's clock is set forward by a little: no residual near zero for a second.
 ///
 /// Deterministic: integers only, time is an argument.
 class DeviceClock {
