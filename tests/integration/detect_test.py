@@ -189,4 +189,6 @@ class DetectTest(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1] + sys.argv[3:])
+    outcome = unittest.main(argv=sys.argv[:1] + sys.argv[3:], exit=False).result
+    skipped = outcome.skipped and outcome.wasSuccessful()
+    sys.exit(77 if skipped else not outcome.wasSuccessful())
