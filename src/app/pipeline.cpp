@@ -1,6 +1,5 @@
 #include "scree/app/pipeline.hpp"
 
-#include <cmath>
 #include <utility>
 
 namespace scree {

@@ -1,6 +1,5 @@
 #include "scree/detect/elevation_gradient.hpp"
 
-#include <cmath>
 #include <limits>
 
 #include "scree/detect/multiversion.hpp"

@@ -1,8 +1,9 @@
 #pragma once
 
-#include <bit>
 #include <cstddef>
 #include <cstdint>
+
+#include "scree/detect/key_sort.hpp"
 
 namespace scree {
 
@@ -17,7 +18,7 @@ inline std::int32_t floor_to_cell(float value) {
 /// `axes` of them share a 64-bit word with the index of one of `capacity` points.
 /// @note With 2^20 points three axes reach 8184 cells, 484 m at the paper's leaf of 0.0592 m.
 inline float reach_of_cells(float cell_size, std::size_t capacity, int axes) {
-  const int bits = (64 - static_cast<int>(std::bit_width(capacity))) / axes;
+  const int bits = KeySort::key_bits(capacity) / axes;
   const std::int32_t cells = std::int32_t{1} << (bits < 31 ? bits - 1 : 30);
   constexpr std::int32_t kWidening = 8;  // neighbourhoods look past the outermost cells
   return static_cast<float>(cells - kWidening) * cell_size;

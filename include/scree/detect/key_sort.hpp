@@ -18,10 +18,9 @@ public:
   static int key_bits(std::size_t capacity) {
     return 64 - static_cast<int>(std::bit_width(capacity));
   }
-  int key_bits() const { return 64 - index_bits_; }
 
   void clear() { words_.clear(); }
-  /// @pre key < 2^key_bits(), index < capacity, fewer than capacity pushed
+  /// @pre key < 2^key_bits(capacity), index < capacity, fewer than capacity pushed
   void push(std::uint64_t key, std::size_t index) { words_.push_back(key << index_bits_ | index); }
   void sort();
 
