@@ -95,6 +95,7 @@ private:
     for (const Eigen::Vector2d& corner : hole.footprint) {
       reach = std::max(reach, (corner - hole.center.head<2>()).norm());
     }
+    if (reach > 1.5 * -hole.height) return;  // too wide for its walls to hide the floor
     hide_where(hole, reach, [&](const Eigen::Vector2d& at) {
       const Eigen::Vector2d place = at + hole.center.head<2>();
       return at.dot(away) > 0 && terrain_.feature_at(place.x(), place.y()) == hole.id &&
