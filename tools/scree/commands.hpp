@@ -20,6 +20,7 @@ void add_decode(CLI::App& app);
 void add_detect(CLI::App& app);
 void add_simulate(CLI::App& app);
 void add_train(CLI::App& app);
+void add_evaluate(CLI::App& app);
 void add_picture(CLI::App& app);
 void add_replay(CLI::App& app);
 void add_watch(CLI::App& app);

@@ -1,44 +1,37 @@
 #include "detections.hpp"
 
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "commands.hpp"
+#include "scoring/json_field.hpp"
 
 namespace scree::cli {
 namespace {
 
-using Json = nlohmann::json;
-
-Eigen::Vector3d vector_of(const Json& json) {
-  return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
-}
-
-Obstacle obstacle_of(const Json& json) {
+Obstacle obstacle_of(const JsonField& field) {
   Obstacle obstacle;
-  obstacle.id = json.at("id").get<std::int64_t>();
-  const auto kind = json.at("kind").get<std::string>();
-  obstacle.kind = kind == "negative" ? ObstacleKind::negative : ObstacleKind::positive;
-  if (kind != name(obstacle.kind)) throw std::runtime_error("unknown kind \"" + kind + "\"");
-  obstacle.confidence = json.at("confidence").get<float>();
-  obstacle.center = vector_of(json.at("center"));
-  obstacle.extent = vector_of(json.at("extent"));
-  obstacle.yaw = json.at("yaw").get<double>();
-  obstacle.height = json.at("height").get<double>();
-  obstacle.points = json.at("points").get<std::uint32_t>();
+  obstacle.id = field["id"].integer();
+  obstacle.kind = field["kind"].kind();
+  obstacle.confidence = static_cast<float>(field["confidence"].number(0, 1));
+  obstacle.center = field["center"].vector();
+  obstacle.extent = field["extent"].vector();
+  if (obstacle.extent.minCoeff() < 0) field["extent"].refuse("a box has no negative length");
+  obstacle.yaw = field["yaw"].number();
+  obstacle.height = field["height"].number();
+  obstacle.points = static_cast<std::uint32_t>(
+      field["points"].integer(0, std::numeric_limits<std::uint32_t>::max()));
   return obstacle;
 }
 
-ObstacleList list_of(const Json& json) {
-  const Json& obstacles = json.at("obstacles");
+ObstacleList list_of(const JsonField& field) {
+  const auto obstacles = field["obstacles"].items();
   ObstacleList list(obstacles.size());
-  list.stamp_ns = json.at("stamp_ns").get<std::int64_t>();
-  list.pose.translation = vector_of(json.at("pose").at("p"));
-  const Json& q = json.at("pose").at("q");
-  list.pose.rotation = {q.at(0).get<double>(), q.at(1).get<double>(), q.at(2).get<double>(),
-                        q.at(3).get<double>()};
-  for (const Json& obstacle : obstacles) list.obstacles.push_back(obstacle_of(obstacle));
+  list.stamp_ns = field["stamp_ns"].integer();
+  list.pose = field["pose"].pose();
+  for (const JsonField& obstacle : obstacles) list.obstacles.push_back(obstacle_of(obstacle));
   return list;
 }
 
@@ -51,10 +44,14 @@ std::vector<ObstacleList> read_detections(const std::filesystem::path& file) {
   std::string line;
   for (int number = 1; std::getline(stream, line); ++number) {
     try {
-      lists.push_back(list_of(Json::parse(line)));
-    } catch (const std::exception& error) {
+      const auto json = parse_json(line);
+      lists.push_back(list_of(JsonField(json)));
+      if (lists.size() > 1 && lists.back().stamp_ns < lists[lists.size() - 2].stamp_ns) {
+        JsonField(json)["stamp_ns"].refuse("it is before that of the line above");
+      }
+    } catch (const JsonFault& fault) {
       throw Failure(file.string() + ":" + std::to_string(number) +
-                    ": not an obstacle list: " + error.what());
+                    ": not an obstacle list: " + fault.what());
     }
   }
   return lists;

@@ -8,7 +8,8 @@
 namespace scree::cli {
 
 /// Reads a file of obstacle lists, one JSON object a line, as append_json_line writes them. Throws
-/// Failure that names file and line where one is not an obstacle list.
+/// Failure that names file and line where one is not an obstacle list, or earlier than the one
+/// before it.
 std::vector<ObstacleList> read_detections(const std::filesystem::path& file);
 
 }  // namespace scree::cli

@@ -1,0 +1,121 @@
+#include "scoring/matching.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace scree {
+namespace {
+
+constexpr double kGrowth = 0.3;        // metres
+constexpr double kLeastOverlap = 0.2;  // intersection over union
+
+/// What lies on the ground, seen in base.
+struct Shadow {
+  Eigen::Vector2d center;
+  Outline outline;
+  double reach = 0;  // of the farthest corner from the centre
+
+  Shadow(const Pose& to_base, const Eigen::Vector3d& middle, const Outline& corners)
+      : center((to_base * middle).head<2>()) {
+    outline.reserve(corners.size());
+    for (const Eigen::Vector2d& corner : corners) {
+      outline.emplace_back(
+          (to_base * Eigen::Vector3d(corner.x(), corner.y(), middle.z())).head<2>());
+      reach = std::max(reach, (outline.back() - center).norm());
+    }
+  }
+  double range() const { return center.norm(); }
+};
+
+Pose inverse(const Pose& pose) {
+  const Eigen::Quaterniond back = pose.rotation.conjugate();
+  return {-(back * pose.translation), back};
+}
+
+Outline corners_of(const Obstacle& box) {
+  const Eigen::Vector2d along =
+      Eigen::Vector2d(std::cos(box.yaw), std::sin(box.yaw)) * box.extent.x() / 2;
+  const Eigen::Vector2d aside =
+      Eigen::Vector2d(-std::sin(box.yaw), std::cos(box.yaw)) * box.extent.y() / 2;
+  const Eigen::Vector2d middle = box.center.head<2>();
+  return {middle + along + aside, middle - along + aside, middle - along - aside,
+          middle + along - aside};
+}
+
+bool can_match(const Shadow& detection, const Shadow& obstacle) {
+  const double apart = (detection.center - obstacle.center).norm();
+  if (apart > obstacle.reach + std::max(kGrowth, detection.reach)) return false;
+  return distance_to(obstacle.outline, detection.center) <= kGrowth ||
+         intersection_over_union(obstacle.outline, detection.outline) >= kLeastOverlap;
+}
+
+/// A detection and an obstacle that it can match, by their numbers.
+struct Candidate {
+  double apart;
+  std::size_t obstacle, detection;
+};
+
+std::vector<Candidate> candidates(const std::vector<Shadow>& obstacles,
+                                  const std::vector<Shadow>& detections) {
+  std::vector<Candidate> all;
+  for (std::size_t o = 0; o < obstacles.size(); ++o) {
+    for (std::size_t d = 0; d < detections.size(); ++d) {
+      if (!can_match(detections[d], obstacles[o])) continue;
+      all.push_back({(detections[d].center - obstacles[o].center).norm(), o, d});
+    }
+  }
+  std::ranges::sort(all, {}, [](const Candidate& each) {
+    return std::tuple(each.apart, each.obstacle, each.detection);
+  });
+  return all;
+}
+
+constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
+}  // namespace
+
+Comparison compare(const Truth& truth, const Truth::Sight& sight, const ObstacleList& list) {
+  const Pose true_to_base = inverse(truth.pose_at(list.stamp_ns));
+  const Pose reported_to_base = inverse(list.pose);
+  std::vector<Shadow> obstacles, detections;
+  for (const TrueObstacle& each : truth.obstacles) {
+    obstacles.emplace_back(true_to_base, each.center, each.footprint);
+  }
+  for (const Obstacle& each : list.obstacles) {
+    detections.emplace_back(reported_to_base, each.center, corners_of(each));
+  }
+  const std::vector<Candidate> nearest_first = candidates(obstacles, detections);
+
+  std::vector<std::size_t> found_by(obstacles.size(), kNone), finds(detections.size(), kNone);
+  const auto is_in = [&](const std::vector<int>& ids, std::size_t obstacle) {
+    return std::ranges::find(ids, truth.obstacles[obstacle].id) != ids.end();
+  };
+  for (const auto& [apart, obstacle, detection] : nearest_first) {
+    if (found_by[obstacle] != kNone || finds[detection] != kNone) continue;
+    if (!is_in(sight.ids, obstacle)) continue;
+    found_by[obstacle] = detection;
+    finds[detection] = obstacle;
+  }
+
+  Comparison comparison;
+  for (const int id : sight.ids) {
+    const auto at = std::ranges::find(truth.obstacles, id, &TrueObstacle::id);
+    const auto o = static_cast<std::size_t>(at - truth.obstacles.begin());
+    const bool is_right = found_by[o] != kNone && list.obstacles[found_by[o]].kind == at->kind;
+    comparison.asked.push_back({&*at, obstacles[o].range(), is_right});
+  }
+  for (std::size_t d = 0; d < detections.size(); ++d) {
+    const Obstacle& detection = list.obstacles[d];
+    if (finds[d] != kNone) {
+      if (truth.obstacles[finds[d]].kind == detection.kind) continue;
+    } else {
+      const auto nearest = std::ranges::find(nearest_first, d, &Candidate::detection);
+      if (nearest != nearest_first.end() && is_in(sight.ignore, nearest->obstacle)) continue;
+    }
+    comparison.false_alarms.push_back({&detection, detections[d].range()});
+  }
+  return comparison;
+}
+
+}  // namespace scree

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scoring/pose_error.hpp"
+#include "scoring/truth.hpp"
+#include "scree/learn/metrics.hpp"
+
+namespace scree {
+
+/// How far ahead the obstacles of one kind were reported. Distances in metres from base in its x-y
+/// plane, one for each obstacle that was.
+struct WarningDistances {
+  std::size_t obstacles = 0;   ///< asked for at least once
+  std::vector<double> first;   ///< at the first right match
+  std::vector<double> stayed;  ///< at the first right match from which on every list that was asked
+                               ///< for the obstacle had it right
+};
+
+double median(std::vector<double> values);  ///< 0 for none
+
+/// What the contract's scoring says of any number of runs.
+struct ScoringResult {
+  static constexpr double kLeastCoverage = 0.95;
+  static constexpr double kRangeBand = 2;  ///< metres
+  /// Lower ends of the bands of height or depth, metres.
+  static constexpr std::array kSizeBands = {0.0, 0.15, 0.3, 0.6};
+  using SizeScores = std::array<Score, kSizeBands.size()>;
+
+  std::size_t runs = 0;
+  std::size_t lists = 0;
+  std::size_t lists_without_entry = 0;  ///< no visible entry within 60 ms: not scored
+  std::size_t entries = 0;              ///< of visible
+  std::size_t covered = 0;              ///< of them those with a list
+  std::size_t runs_not_covered = 0;     ///< coverage under kLeastCoverage
+
+  Scores scores;
+  /// By distance, the key times kRangeBand is a band's near end; a false positive stands at the
+  /// range of the detection, the others at that of the obstacle.
+  std::map<int, Scores> by_range;
+  /// By height or depth; a false positive by that of the detection.
+  SizeScores positive_sizes{}, negative_sizes{};
+  /// Right matches and misses by what the truth calls the obstacle; no false positives.
+  std::map<std::string, Score> by_shape;
+  WarningDistances positive_warning, negative_warning;  ///< of runs with several entries
+  std::vector<PoseError> pose_errors;                   ///< of runs in which the robot moved
+
+  double coverage() const;
+  /// A score with less coverage does not count.
+  bool counts() const { return runs_not_covered == 0; }
+};
+
+/// Scores lists of detections against truth exactly as the contract says, run by run.
+class Scorer {
+public:
+  /// @param lists of one run, in time order. @pre truth as read_truth() lets it pass
+  void add(const Truth& truth, std::span<const ObstacleList> lists);
+  const ScoringResult& result() const { return result_; }
+
+private:
+  ScoringResult result_;
+};
+
+}  // namespace scree
