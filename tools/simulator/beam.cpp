@@ -61,7 +61,7 @@ bool Beam::add(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, 
 }
 
 void Beam::blend() {
-  constexpr double kPulse = 0.6;  // metres: half of 4 ns of light
+  constexpr double kPulse = 0.8;  // metres: a pulse of 5 ns, out and back
   std::sort(echoes_.begin(), echoes_.end(),
             [](const Echo& a, const Echo& b) { return a.range < b.range; });
   std::size_t groups = 0;

@@ -91,8 +91,7 @@ std::vector<TrackPoint> draw_track(const TrackSettings& settings, std::uint64_t 
     if (here.position.norm() > kArena) {
       const double home = std::atan2(-here.position.y(), -here.position.x());
       wanted += 0.35 * std::sin(home - here.yaw) * smooth((here.position.norm() - kArena) / 3);
-      // Straight outwards, the sine gives no side to turn to.
-      if (std::cos(home - here.yaw) < 0) wanted = std::copysign(0.4, wanted);
+      if (std::cos(home - here.yaw) < 0) wanted = std::copysign(0.4, std::sin(home - here.yaw));
     }
     const double most = kMostTurning / std::max(here.speed, 0.3);
     curvature += (std::clamp(wanted, -most, most) - curvature) * kStep / 0.5;
