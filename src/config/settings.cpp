@@ -15,6 +15,18 @@ namespace scree {
 
 // A ring of a single sweep is dense and the next ring far off: the kernel reaches from ring to
 // ring, weighs the nearest points most, and what is steep is too little to be thinned further.
+DetectSettings DetectSettings::for_cloud() {
+  DetectSettings detect;
+  detect.ground = GroundReference::surface;
+  detect.candidates = Candidates::bodies;
+  detect.suppression = false;
+  detect.cluster_method = ClusterMethod::euclidean;
+  detect.cluster_tolerance = 0.20;
+  detect.min_cluster_size = 5;
+  detect.network = "network_cloud.txt";
+  return detect;
+}
+
 DetectSettings DetectSettings::for_sweep() {
   DetectSettings detect;
   detect.max_points = 1 << 17;

@@ -43,16 +43,16 @@ void Clusters::gather(const EdgePoints& edges, std::span<const std::uint32_t> la
   }
 }
 
-Features measure(const EdgePoints& edges, std::span<const std::uint32_t> members, float ground) {
+Features measure(const EdgePoints& edges, std::span<const std::uint32_t> members) {
   const PointCloud& points = edges.points;
-  double x = 0, y = 0, z = 0;
-  float lowest = points.z[members[0]], highest = lowest;
+  double x = 0, y = 0, height = 0;
+  float lowest = edges.height[members[0]], highest = lowest;
   for (const std::uint32_t i : members) {
     x += points.x[i];
     y += points.y[i];
-    z += points.z[i];
-    lowest = std::min(lowest, points.z[i]);
-    highest = std::max(highest, points.z[i]);
+    height += edges.height[i];
+    lowest = std::min(lowest, edges.height[i]);
+    highest = std::max(highest, edges.height[i]);
   }
   const double share = 1.0 / static_cast<double>(members.size());
   const auto axis_x = static_cast<float>(x * share), axis_y = static_cast<float>(y * share);
@@ -63,7 +63,13 @@ Features measure(const EdgePoints& edges, std::span<const std::uint32_t> members
     if (along > 0) ++acute;
     if (along < 0) ++obtuse;
   }
-  return {static_cast<float>(z * share) - ground, highest - ground, lowest - ground, acute, obtuse};
+  Features features{};
+  features[mean_height] = static_cast<float>(height * share);
+  features[max_height] = highest;
+  features[min_height] = lowest;
+  features[acute_count] = acute;
+  features[obtuse_count] = obtuse;
+  return features;
 }
 
 }  // namespace scree

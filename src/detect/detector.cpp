@@ -43,9 +43,12 @@ Detector::Detector(const DetectSettings& settings, Network network)
       cells_(count(settings.max_points)),
       slope_x_(count(settings.max_points)),
       slope_y_(count(settings.max_points)),
+      height_(count(settings.max_points)),
+      is_candidate_(count(settings.max_points)),
       is_edge_(count(settings.max_points)),
       edges_(count(settings.max_edge_points)),
       kept_(count(settings.max_edge_points)),
+      parted_(count(settings.max_edge_points)),
       suppression_{.distance = static_cast<float>(settings.suppression_distance),
                    .radius = static_cast<float>(settings.suppression_radius)},
       edge_cells_(count(settings.max_edge_points)),
@@ -55,13 +58,17 @@ Detector::Detector(const DetectSettings& settings, Network network)
       sizes_(count(settings.max_edge_points)),
       clusters_(count(settings.max_edge_points)),
       ground_(static_cast<float>(settings.ground_inner), static_cast<float>(settings.ground_outer),
-              count(settings.max_points)) {
+              count(settings.max_points)),
+      surface_(settings.uses_surface() ? count(settings.max_points) : 0,
+               settings.uses_surface() ? count(settings.max_ground_cells) : 0),
+      surroundings_(settings.uses_surface() ? count(settings.max_ground_cells) : 0) {
   limit_ = common_reach(settings_, gradient_, suppression_);
 }
 
 void Detector::detect(PointView cloud, FixedVector<Obstacle>& obstacles) {
   counts_ = {.input = cloud.size()};
   thin(cloud);
+  choose_candidates();
   find_edges();
   if (settings_.suppression) suppression_.suppress(edges_, edge_cells_, kept_);
   find_clusters();
@@ -82,27 +89,65 @@ void Detector::thin(PointView cloud) {
   counts_.below_clearance = thinned_.size();
 }
 
-void Detector::find_edges() {
+void Detector::choose_candidates() {
   cells_.build(thinned_, gradient_.reach());
-  slope_x_.resize(cells_.size());
-  slope_y_.resize(cells_.size());
-  is_edge_.resize(cells_.size());
-  gradient_.compute(cells_, slope_x_, slope_y_);
-
-  const auto threshold = static_cast<float>(settings_.edge_threshold);
-  edges_.clear();
-  for (std::size_t i = 0; i < cells_.size(); ++i) {
-    if (!std::isnan(slope_x_[i])) ++counts_.known;
-    const float square = slope_x_[i] * slope_x_[i] + slope_y_[i] * slope_y_[i];
-    is_edge_[i] = square >= threshold * threshold ? 1 : 0;
-    if (is_edge_[i] == 0) continue;
-    ++counts_.edges;
-    if (!edges_.push_back(cells_.points(), i, slope_x_[i], slope_y_[i])) ++counts_.edges_dropped;
+  const PointCloud& points = cells_.points();
+  is_candidate_.assign(points.size(), 1);
+  height_.assign(points.size(), 0);
+  if (!settings_.uses_surface()) return;
+  surface_.build(points, {.cell_size = static_cast<float>(settings_.ground_cell),
+                          .max_slope = static_cast<float>(settings_.ground_slope),
+                          .tolerance = static_cast<float>(settings_.ground_tolerance)});
+  const auto least = static_cast<float>(settings_.body_height);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    height_[i] = points.z[i] - surface_.height(points.x[i], points.y[i]);
+    if (settings_.candidates == Candidates::edges) continue;
+    const bool is_body =
+        std::abs(height_[i]) >= least && !surface_.is_ground(points.x[i], points.y[i]);
+    is_candidate_[i] = is_body ? 1 : 0;
   }
 }
 
+void Detector::find_edges() {
+  slope_x_.resize(cells_.size());
+  slope_y_.resize(cells_.size());
+  is_edge_.resize(cells_.size());
+  gradient_.compute(cells_, is_candidate_, slope_x_, slope_y_);
+
+  const bool takes_level_points = settings_.candidates == Candidates::bodies;
+  const auto threshold = static_cast<float>(settings_.edge_threshold);
+  edges_.clear();
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    const bool is_known = !std::isnan(slope_x_[i]);
+    if (is_known) ++counts_.known;
+    const float square = slope_x_[i] * slope_x_[i] + slope_y_[i] * slope_y_[i];
+    is_edge_[i] = takes_level_points ? is_candidate_[i] : square >= threshold * threshold ? 1 : 0;
+    if (is_edge_[i] == 0) continue;
+    ++counts_.edges;
+    if (!edges_.push_back(cells_.points(), i, is_known ? slope_x_[i] : 0.0F,
+                          is_known ? slope_y_[i] : 0.0F, height_[i])) {
+      ++counts_.edges_dropped;
+    }
+  }
+}
+
+/// With a gap opened between what stands above the ground and what lies below it, so that a hole
+/// and the rock on its rim never grow together.
+const EdgePoints& Detector::parted() {
+  if (!settings_.uses_surface()) return kept();
+  const auto gap = static_cast<float>(
+      2 * (settings_.voxel_size + settings_.seed_distance + settings_.cluster_tolerance));
+  parted_.clear();
+  for (std::size_t i = 0; i < kept().size(); ++i) {
+    const float height = kept().height[i];
+    parted_.push_back(kept().points, i, kept().slope_x[i], kept().slope_y[i], height);
+    parted_.points.z[i] = height > 0 ? gap : -gap;
+  }
+  return parted_;
+}
+
 void Detector::find_clusters() {
-  const EdgePoints& edges = kept();
+  const EdgePoints& edges = parted();
   const auto tolerance = static_cast<float>(settings_.cluster_tolerance);
   counts_.kept = edges.size();
   labels_.resize(edges.size());
@@ -128,15 +173,24 @@ void Detector::find_clusters() {
       return block == kNoLabel ? kNoLabel : euclidean_.labels()[block];
     });
   }
-  clusters_.gather(edges, labels_, sizes_, static_cast<std::uint32_t>(settings_.min_cluster_size));
+  clusters_.gather(kept(), labels_, sizes_, static_cast<std::uint32_t>(settings_.min_cluster_size));
   counts_.clusters = clusters_.all().size();
 }
 
 void Detector::measure_clusters() {
+  EdgePoints& edges = settings_.suppression ? kept_ : edges_;
+  if (settings_.uses_surface()) surroundings_.build(edges, surface_);
   for (Cluster& cluster : clusters_.all()) {
-    const float middle = (cluster.lowest + cluster.highest) / 2;
-    cluster.ground = ground_.around(cluster.box, cells_, is_edge_, middle);
-    cluster.features = measure(kept(), clusters_.members(cluster), cluster.ground);
+    const auto members = clusters_.members(cluster);
+    if (settings_.ground == GroundReference::ring) {
+      const float middle = (cluster.lowest + cluster.highest) / 2;
+      cluster.ground = ground_.around(cluster.box, cells_, is_edge_, middle);
+      for (const std::uint32_t i : members) edges.height[i] = edges.points.z[i] - cluster.ground;
+    } else {
+      cluster.ground = surface_.height(cluster.box.center_x, cluster.box.center_y);
+    }
+    cluster.features = measure(edges, members);
+    if (settings_.uses_surface()) surroundings_.measure(cluster, members, edges, surface_);
   }
 }
 

@@ -10,6 +10,7 @@ namespace {
 /// One lane for each of the eight positions around a point: the compiler maps them to whatever
 /// vectors the processor has, and the result does not depend on which.
 using Lanes = float __attribute__((vector_size(32)));
+constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 using Masks = std::int32_t __attribute__((vector_size(32)));
 
 constexpr Lanes kOffsetX = {-1, 0, 1, -1, 1, -1, 0, 1};
@@ -78,7 +79,6 @@ Slope sobel(const Kernel& kernel, const PointCloud& points, std::uint32_t i,
   std::int32_t fewest = counts[0];
   for (int k = 1; k < 8; ++k) fewest = counts[k] < fewest ? counts[k] : fewest;
   if (fewest < kernel.min_neighbours) {
-    constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
     return {kUnknown, kUnknown};
   }
   const Lanes estimate = elevations / weights;
@@ -87,8 +87,8 @@ Slope sobel(const Kernel& kernel, const PointCloud& points, std::uint32_t i,
 
 }  // namespace
 
-void ElevationGradient::compute(const PlaneCells& cells, std::span<float> slope_x,
-                                std::span<float> slope_y) const {
+void ElevationGradient::compute(const PlaneCells& cells, std::span<const std::uint8_t> wanted,
+                                std::span<float> slope_x, std::span<float> slope_y) const {
   const float square = radius * radius;
   const float decay = 1.0F / (2.0F * bandwidth * bandwidth);
   const ShortExp exp(square * decay);
@@ -97,6 +97,10 @@ void ElevationGradient::compute(const PlaneCells& cells, std::span<float> slope_
   const float share = 1.0F / (8.0F * spacing);
   cells.for_each_cell([&](Run cell, std::span<const Run> neighbourhood) {
     for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
+      if (!wanted.empty() && wanted[i] == 0) {
+        slope_x[i] = slope_y[i] = kUnknown;
+        continue;
+      }
       const Slope slope = sobel(kernel, cells.points(), i, neighbourhood);
       slope_x[i] = slope.x * share;
       slope_y[i] = slope.y * share;

@@ -112,7 +112,7 @@ private:
   std::optional<Error> error_;
 };
 
-void read_forms(LineReader& reader, Network::Forms& forms) {
+void read_forms(LineReader& reader, std::span<InputForm> forms) {
   const auto words = reader.expect("form", forms.size());
   if (!words) return;
   for (std::size_t i = 0; i < forms.size(); ++i) {
@@ -133,14 +133,15 @@ double apply(InputForm form, float feature) noexcept {
   return form == InputForm::log1p ? std::log1p(std::max(value, 0.0)) : value;
 }
 
-Network::Network(std::size_t hidden)
-    : hidden_(hidden), weights_(hidden * (kInputs + 1) + kOutputs * (hidden + 1)) {
-  assert(hidden >= 1 && hidden <= kMaxHidden);
+Network::Network(std::size_t hidden, std::size_t inputs)
+    : hidden_(hidden), inputs_(inputs), weights_(hidden * (inputs + 1) + kOutputs * (hidden + 1)) {
+  assert(hidden >= 1 && hidden <= kMaxHidden && inputs >= 1 && inputs <= kFeatures);
+  scale.fill(1);
 }
 
 Network::Inputs Network::normalised(const Features& features) const noexcept {
-  Inputs inputs;
-  for (std::size_t i = 0; i < kInputs; ++i) {
+  Inputs inputs{};
+  for (std::size_t i = 0; i < inputs_; ++i) {
     const double centred = (apply(forms[i], features[i]) - mean[i]) / scale[i];
     inputs[i] = std::clamp(centred, -kInputLimit, kInputLimit);
   }
@@ -152,7 +153,7 @@ Network::Outputs Network::forward(const Inputs& inputs,
   const double* weight = weights_.data();
   for (std::size_t unit = 0; unit < hidden_; ++unit) {
     double sum = 0;
-    for (const double input : inputs) sum += *weight++ * input;
+    for (std::size_t i = 0; i < inputs_; ++i) sum += *weight++ * inputs[i];
     hidden_values[unit] = sigmoid(sum + *weight++);
   }
   Outputs outputs;
@@ -165,8 +166,8 @@ Network::Outputs Network::forward(const Inputs& inputs,
 }
 
 Answer Network::operator()(const Features& features) const noexcept {
-  for (const float feature : features) {
-    if (std::isnan(feature)) return {};
+  for (std::size_t i = 0; i < inputs_; ++i) {
+    if (std::isnan(features[i])) return {};
   }
   std::array<double, kMaxHidden> hidden_values;
   const Outputs outputs = forward(normalised(features), hidden_values);
@@ -179,8 +180,8 @@ Result<Network> Network::parse(std::string_view text, const std::string& origin)
   if (version != kVersion)
     reader.refuse(fmt::format("format version {} is not {}", version, kVersion));
   const int inputs = reader.whole_number("inputs");
-  if (inputs != static_cast<int>(kInputs)) {
-    reader.refuse(fmt::format("has {} inputs, the features are {}", inputs, kInputs));
+  if (inputs < 1 || inputs > static_cast<int>(kFeatures)) {
+    reader.refuse(fmt::format("has {} inputs, there are {} features", inputs, kFeatures));
   }
   const int hidden = reader.whole_number("hidden");
   if (hidden < 1 || hidden > static_cast<int>(kMaxHidden)) {
@@ -192,18 +193,19 @@ Result<Network> Network::parse(std::string_view text, const std::string& origin)
   }
   if (reader.error()) return tl::make_unexpected(*reader.error());
 
-  Network network(static_cast<std::size_t>(hidden));
-  read_forms(reader, network.forms);
-  reader.numbers("mean", network.mean);
-  reader.numbers("scale", network.scale);
+  Network network(static_cast<std::size_t>(hidden), static_cast<std::size_t>(inputs));
+  const std::size_t used = network.inputs_;
+  read_forms(reader, std::span(network.forms).first(used));
+  reader.numbers("mean", std::span(network.mean).first(used));
+  reader.numbers("scale", std::span(network.scale).first(used));
   for (const double scale : network.scale) {
     if (!(scale >= 1 / kMaxWeight))
       reader.refuse(fmt::format("a scale is {}, below {}", scale, 1 / kMaxWeight));
   }
   std::span<double> rest = network.weights_;
   for (std::size_t unit = 0; unit < network.hidden_; ++unit) {
-    reader.numbers("unit", rest.first(kInputs + 1));
-    rest = rest.subspan(kInputs + 1);
+    reader.numbers("unit", rest.first(used + 1));
+    rest = rest.subspan(used + 1);
   }
   for (std::size_t output = 0; output < kOutputs; ++output) {
     reader.numbers("output", rest.first(network.hidden_ + 1));
@@ -237,14 +239,15 @@ std::string Network::to_text(std::string_view provenance) const {
   std::istringstream lines{std::string(provenance)};
   for (std::string line; std::getline(lines, line);)
     text += line.empty() ? "#\n" : "# " + line + "\n";
-  text += fmt::format("{} {}\ninputs {}\nhidden {}\noutputs {}\nform", kFormat, kVersion, kInputs,
+  text += fmt::format("{} {}\ninputs {}\nhidden {}\noutputs {}\nform", kFormat, kVersion, inputs_,
                       hidden_, kOutputs);
-  for (const InputForm form : forms)
+  for (const InputForm form : std::span(forms).first(inputs_))
     text += fmt::format(" {}", kFormNames[static_cast<std::size_t>(form)]);
-  text += fmt::format("\nmean {}\nscale {}\n", fmt::join(mean, " "), fmt::join(scale, " "));
+  text += fmt::format("\nmean {}\nscale {}\n", fmt::join(std::span(mean).first(inputs_), " "),
+                      fmt::join(std::span(scale).first(inputs_), " "));
   const double* row = weights_.data();
-  for (std::size_t unit = 0; unit < hidden_; ++unit, row += kInputs + 1) {
-    text += fmt::format("unit {}\n", fmt::join(row, row + kInputs + 1, " "));
+  for (std::size_t unit = 0; unit < hidden_; ++unit, row += inputs_ + 1) {
+    text += fmt::format("unit {}\n", fmt::join(row, row + inputs_ + 1, " "));
   }
   for (std::size_t output = 0; output < kOutputs; ++output, row += hidden_ + 1) {
     text += fmt::format("output {}\n", fmt::join(row, row + hidden_ + 1, " "));

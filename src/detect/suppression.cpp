@@ -43,7 +43,8 @@ void Suppression::suppress(const EdgePoints& edges, PlaneCells& cells, EdgePoint
         }
       }
       if (steepness >= above.value() && steepness >= below.value()) {
-        kept.push_back(edges.points, source, edges.slope_x[source], edges.slope_y[source]);
+        kept.push_back(edges.points, source, edges.slope_x[source], edges.slope_y[source],
+                       edges.height[source]);
       }
     }
   });

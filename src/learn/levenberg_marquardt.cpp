@@ -30,11 +30,11 @@ void fill(const Network& network, const Sample& sample, Eigen::Ref<VectorXd> err
       const double value = hidden[unit];
       (*rows)(row, static_cast<Index>(output_row + unit)) = slope * value;
       const double through = slope * network.weights()[output_row + unit] * value * (1 - value);
-      const auto column = static_cast<Index>(unit * (Network::kInputs + 1));
-      for (std::size_t i = 0; i < Network::kInputs; ++i) {
+      const auto column = static_cast<Index>(unit * (network.inputs() + 1));
+      for (std::size_t i = 0; i < network.inputs(); ++i) {
         (*rows)(row, column + static_cast<Index>(i)) = through * inputs[i];
       }
-      (*rows)(row, column + static_cast<Index>(Network::kInputs)) = through;
+      (*rows)(row, column + static_cast<Index>(network.inputs())) = through;
     }
     (*rows)(row, static_cast<Index>(output_row + network.hidden())) = slope;
   }

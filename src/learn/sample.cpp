@@ -9,7 +9,7 @@ void fit_normalisation(Network& network, std::span<const Sample> samples) {
   network.scale.fill(1);
   if (samples.empty()) return;
   const auto count = static_cast<double>(samples.size());
-  for (std::size_t i = 0; i < Network::kInputs; ++i) {
+  for (std::size_t i = 0; i < network.inputs(); ++i) {
     double sum = 0;
     for (const Sample& sample : samples) sum += apply(network.forms[i], sample.features[i]);
     const double mean = sum / count;
@@ -29,7 +29,7 @@ void initialise_weights(Network& network, Random random) {
   const std::span<double> weights = network.weights();
   const std::size_t first_output = network.output_row(0);
   for (std::size_t i = 0; i < weights.size(); ++i) {
-    const std::size_t inputs = i < first_output ? Network::kInputs : network.hidden();
+    const std::size_t inputs = i < first_output ? network.inputs() : network.hidden();
     const double reach = 2.0 / std::sqrt(static_cast<double>(inputs + 1));
     weights[i] = random.uniform(-reach, reach);
   }

@@ -12,7 +12,7 @@ TrainedNetwork train_network(std::span<const Sample> training, std::span<const S
   };
   std::optional<TrainedNetwork> best;
   for (std::size_t i = 0; i < std::max<std::size_t>(settings.restarts, 1); ++i) {
-    TrainedNetwork trained{Network(settings.hidden), {}};
+    TrainedNetwork trained{Network(settings.hidden, settings.inputs), {}};
     trained.network.forms = settings.forms;
     fit_normalisation(trained.network, training);
     initialise_weights(trained.network, Random(settings.seed, i));

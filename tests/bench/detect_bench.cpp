@@ -11,7 +11,7 @@ namespace scree {
 namespace {
 
 const DetectSettings& settings() {
-  static const DetectSettings defaults = DetectSettings::for_cloud();
+  static const DetectSettings defaults = DetectSettings::for_paper();
   return defaults;
 }
 
@@ -77,7 +77,7 @@ void elevation_gradient(benchmark::State& state) {
   FixedVector<float> slope_x(max_points()), slope_y(max_points());
   slope_x.resize(cells.size());
   slope_y.resize(cells.size());
-  for (auto _ : state) gradient().compute(cells, slope_x, slope_y);
+  for (auto _ : state) gradient().compute(cells, {}, slope_x, slope_y);
 }
 BENCHMARK(elevation_gradient)->Unit(benchmark::kMillisecond);
 
@@ -119,8 +119,8 @@ void features_and_ground(benchmark::State& state) {
   const Clusters& clusters = detector.clusters();
   for (auto _ : state) {
     for (const Cluster& cluster : clusters.all()) {
-      const float height = ground.around(cluster.box, detector.cells(), is_edge, 0);
-      benchmark::DoNotOptimize(measure(detector.kept(), clusters.members(cluster), height));
+      benchmark::DoNotOptimize(ground.around(cluster.box, detector.cells(), is_edge, 0));
+      benchmark::DoNotOptimize(measure(detector.kept(), clusters.members(cluster)));
     }
   }
 }

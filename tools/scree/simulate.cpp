@@ -3,12 +3,13 @@
 #include "commands.hpp"
 #include "progress.hpp"
 #include "simulator/capture.hpp"
+#include "simulator/scene.hpp"
 
 namespace scree::cli {
 namespace {
 
 struct Options {
-  std::string folder, cloud;
+  std::string folder, cloud, scene;
   CaptureSettings capture;
   CloudSettings points;
 };
@@ -22,7 +23,10 @@ void run(const Options& options) {
     Progress progress("casting", 1000);
     written = write_capture(options.folder, options.capture, std::ref(progress));
   } else {
-    written = write_cloud(options.cloud, options.points, options.capture.seed);
+    const auto scene = scene_named(options.scene);
+    const std::uint64_t seed = options.capture.seed;
+    written = write_cloud(options.cloud, options.points, seed,
+                          scene ? cloud_terrain(*scene, seed) : TerrainSettings());
   }
   if (!written) throw Failure(written.error().message);
 }
@@ -38,6 +42,14 @@ void add_simulate(CLI::App& app) {
   cloud->excludes(folder);
   command->add_option("--seed", options->capture.seed, "of terrain and noise")
       ->capture_default_str();
+  command
+      ->add_option(
+          "--scene", options->scene,
+          "easy, rolling, rough, crater, ditch, grass or mixed; without it a cloud is like "
+          "the paper's")
+      ->check([](const std::string& name) {
+        return scene_named(name) ? std::string() : "there is no scene " + name;
+      });
   command->add_option("--seconds", options->capture.seconds, "length of the capture")
       ->excludes(cloud)
       ->check(CLI::Range(0.05, 3600.0))

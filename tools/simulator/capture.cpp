@@ -129,13 +129,13 @@ Result<void> write_capture(const std::filesystem::path& folder, const CaptureSet
 }
 
 Result<void> write_cloud(const std::filesystem::path& file, const CloudSettings& settings,
-                         std::uint64_t seed) {
-  const Terrain terrain(TerrainSettings(), seed);
+                         std::uint64_t seed, const TerrainSettings& terrain_settings) {
+  const Terrain terrain(terrain_settings, seed);
   const PointCloud cloud = reconstructed_cloud(terrain, settings, seed);
   if (auto written = write_pcd(file, cloud); !written) return written;
   Truth truth;
   truth.poses.push_back({0, Pose()});
-  truth.visible.push_back({0, obstacle_ids(terrain), {}});
+  truth.visible.push_back({0, obstacle_ids(terrain), small_ids(terrain)});
   std::filesystem::path beside = file;
   return write_truth(beside.replace_extension(".truth.json"), terrain, truth);
 }

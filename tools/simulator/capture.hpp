@@ -24,7 +24,8 @@ Result<void> write_capture(const std::filesystem::path& folder, const CaptureSet
                            const std::function<void(std::size_t)>& progress);
 
 /// Writes one reconstructed cloud, and its truth beside it (CLOUD.pcd, CLOUD.truth.json).
+/// @param terrain settings of it: by default like the paper's
 Result<void> write_cloud(const std::filesystem::path& file, const CloudSettings& settings,
-                         std::uint64_t seed);
+                         std::uint64_t seed, const TerrainSettings& terrain = {});
 
 }  // namespace scree

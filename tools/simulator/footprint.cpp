@@ -30,4 +30,11 @@ double distance(const Footprint& footprint, const Eigen::Vector2d& point) {
   return nearest;
 }
 
+double distance(const Footprint& a, const Footprint& b) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector2d& corner : a) nearest = std::min(nearest, distance(b, corner));
+  for (const Eigen::Vector2d& corner : b) nearest = std::min(nearest, distance(a, corner));
+  return nearest;
+}
+
 }  // namespace scree

@@ -11,5 +11,7 @@ using Footprint = std::vector<Eigen::Vector2d>;
 bool contains(const Footprint& footprint, const Eigen::Vector2d& point);
 /// Distance to the nearest point of the footprint; 0 inside. Infinite for an empty footprint.
 double distance(const Footprint& footprint, const Eigen::Vector2d& point);
+/// Least distance of two footprints; 0 where they overlap.
+double distance(const Footprint& a, const Footprint& b);
 
 }  // namespace scree

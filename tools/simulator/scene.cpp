@@ -1,6 +1,165 @@
 #include "simulator/scene.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace scree {
+namespace {
+
+struct Range {
+  double low, high;
+  double draw(Random& random) const { return random.uniform(low, high); }
+};
+
+/// What makes a scene. Shares are of the number of obstacles.
+struct Recipe {
+  std::string_view name;
+  Range slope_deg;
+  double roughness;  ///< metres
+  Range unevenness;  ///< metres
+  Range tuft_cover;
+  Range negative;  ///< the rest are rocks
+  Range smooth, small, pairs, neighbours, nests;
+  ShapeWeights weights;
+};
+
+constexpr Range kNone = {0, 0};
+
+//                                 boulder block peak bump log ledge | bowl pit pothole crater ditch
+constexpr std::array<Recipe, kScenes.size()> kRecipes = {{
+    {"easy",
+     {0.5, 4},
+     0.006,
+     kNone,
+     kNone,
+     {0.2, 0.5},
+     {0.1, 0.4},
+     {0, 0.2},
+     {0, 0.15},
+     {0, 0.05},
+     kNone,
+     {4, 2, 2, 1, 1, 1, 1, 2, 2, 1, 1, 1, 1}},
+    {"rolling",
+     {5, 15},
+     0.012,
+     {0, 0.01},
+     {0, 0.03},
+     {0.2, 0.5},
+     {0.4, 1.0},
+     {0, 0.3},
+     {0, 0.2},
+     {0, 0.1},
+     {0, 0.25},
+     {3, 2, 2, 2, 1, 1, 2, 2, 2, 2, 1, 1, 1}},
+    {"rough",
+     {3, 10},
+     0.02,
+     {0.015, 0.035},
+     {0, 0.05},
+     {0.2, 0.5},
+     {0.2, 0.6},
+     {0.3, 1.2},
+     {0, 0.2},
+     {0, 0.1},
+     {0, 0.1},
+     {3, 3, 2, 2, 1, 1, 2, 2, 2, 2, 1, 1, 1}},
+    {"crater",
+     {2, 9},
+     0.012,
+     {0, 0.02},
+     kNone,
+     {0.6, 0.9},
+     {0.3, 0.8},
+     {0, 0.4},
+     {0, 0.1},
+     {0, 0.15},
+     {0.1, 0.4},
+     {3, 2, 2, 1, 1, 1, 2, 2, 3, 5, 0, 1, 3}},
+    {"ditch",
+     {1, 8},
+     0.012,
+     {0, 0.015},
+     {0, 0.05},
+     {0.4, 0.7},
+     {0.1, 0.5},
+     {0, 0.3},
+     {0, 0.1},
+     {0, 0.1},
+     {0, 0.1},
+     {2, 1, 1, 1, 3, 4, 1, 1, 1, 1, 6, 1, 1}},
+    {"grass",
+     {1, 8},
+     0.015,
+     {0, 0.015},
+     {0.1, 0.45},
+     {0.2, 0.5},
+     {0.2, 0.6},
+     {0, 0.3},
+     {0, 0.15},
+     {0, 0.1},
+     {0, 0.15},
+     {3, 2, 2, 2, 2, 1, 1, 2, 2, 2, 2, 1, 1}},
+    {"mixed",
+     {1, 13},
+     0.015,
+     {0, 0.03},
+     {0, 0.15},
+     {0.25, 0.6},
+     {0.2, 0.8},
+     {0, 0.6},
+     {0, 0.25},
+     {0, 0.15},
+     {0, 0.25},
+     {3, 2, 2, 2, 2, 2, 2, 2, 2, 3, 2, 1, 1}},
+}};
+
+const Recipe& recipe_of(Scene scene) {
+  return kRecipes[static_cast<std::size_t>(scene)];
+}
+
+}  // namespace
+
+std::string_view name_of(Scene scene) {
+  return recipe_of(scene).name;
+}
+
+std::optional<Scene> scene_named(std::string_view name) {
+  for (const Scene scene : kScenes) {
+    if (name_of(scene) == name) return scene;
+  }
+  return std::nullopt;
+}
+
+TerrainSettings scene_terrain(Scene scene, double area, std::uint64_t seed) {
+  constexpr Range kObstaclesPerSquareMetre = {0.02, 0.08};
+  const Recipe& recipe = recipe_of(scene);
+  Random random(seed, 0x5CE);
+  const double obstacles = std::max(area * kObstaclesPerSquareMetre.draw(random), 4.0);
+  const auto count = [&](const Range& share) {
+    return static_cast<int>(std::lround(obstacles * share.draw(random)));
+  };
+  TerrainSettings settings;
+  settings.gentlest_slope_deg = recipe.slope_deg.low;
+  settings.steepest_slope_deg = recipe.slope_deg.high;
+  settings.roughness = recipe.roughness;
+  settings.unevenness = recipe.unevenness.draw(random);
+  settings.tuft_cover = recipe.tuft_cover.draw(random);
+  settings.negative = std::max(count(recipe.negative), 1);
+  settings.positive = std::max(static_cast<int>(std::lround(obstacles)) - settings.negative, 1);
+  settings.smooth = count(recipe.smooth);
+  settings.small = count(recipe.small);
+  settings.pairs = count(recipe.pairs);
+  settings.neighbours = count(recipe.neighbours);
+  settings.nests = count(recipe.nests);
+  settings.weights = recipe.weights;
+  return settings;
+}
+
+TerrainSettings cloud_terrain(Scene scene, std::uint64_t seed) {
+  const double edge = 2 * TerrainSettings().placed_within;
+  constexpr double kSparser = 0.6;  // a place that was worth mapping whole is less crowded
+  return scene_terrain(scene, kSparser * edge * edge, seed);
+}
 
 TerrainSettings scene_terrain() {
   TerrainSettings settings;

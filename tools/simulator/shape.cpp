@@ -29,102 +29,10 @@ double spread(ShapeKind kind) {
 }  // namespace
 
 std::string_view name_of(ShapeKind kind) {
-  constexpr std::array<std::string_view, 10> kNamesOfShapes = {
-      "boulder", "block", "peak", "bump", "bowl", "pit", "crater", "ditch", "mound", "hollow"};
+  constexpr std::array<std::string_view, kShapeKinds> kNamesOfShapes = {
+      "boulder", "block",   "peak",   "bump",  "log",   "ledge", "bowl",
+      "pit",     "pothole", "crater", "ditch", "mound", "hollow"};
   return kNamesOfShapes[static_cast<std::size_t>(kind)];
-}
-
-Shape Shape::draw(ShapeKind kind, Random& random) {
-  Shape shape;
-  shape.kind_ = kind;
-  const double yaw = random.uniform(-kPi, kPi);
-  shape.cos_yaw_ = std::cos(yaw);
-  shape.sin_yaw_ = std::sin(yaw);
-  double irregularity = 0.2;
-  double length = 1;
-  double width = 1;
-  if (is_positive(kind)) {
-    const double draw = random.uniform();
-    shape.size_ = 0.15 + 1.05 * draw * std::sqrt(draw);  // more small rocks than large ones
-    width = std::max(0.15, shape.size_ * random.uniform(0.45, 1.1));
-    length = width * (random.chance(0.25) ? random.uniform(1.6, 3.0) : random.uniform(1.0, 1.5));
-  } else {
-    shape.size_ = random.uniform(0.2, 1.0);
-  }
-  switch (kind) {
-    case ShapeKind::boulder:
-      shape.sharpness_ = random.uniform(0.35, 0.6);
-      break;
-    case ShapeKind::block:
-      shape.sharpness_ = random.uniform(0.12, 0.35);
-      shape.detail_ = random.uniform(0, 0.35);
-      break;
-    case ShapeKind::peak:
-      shape.sharpness_ = random.uniform(0.7, 1.1);
-      break;
-    case ShapeKind::bump:
-      width = shape.size_ * random.uniform(1.0, 1.7);
-      length = width * random.uniform(1.0, 1.4);
-      break;
-    case ShapeKind::bowl:
-      width = std::max(0.3, shape.size_ * random.uniform(0.8, 1.6));
-      length = width * random.uniform(1.0, 1.5);
-      break;
-    case ShapeKind::pit:
-      shape.sharpness_ = random.uniform(0.1, 0.4);
-      width = std::max(0.3, shape.size_ * random.uniform(0.6, 1.4));
-      length = width * random.uniform(1.0, 1.8);
-      break;
-    case ShapeKind::crater:
-      width = std::max(0.4, shape.size_ * random.uniform(1.2, 2.0));
-      length = width * random.uniform(1.0, 1.25);
-      shape.detail_ = shape.size_ * random.uniform(0.08, 0.3);
-      irregularity = 0.1;
-      break;
-    case ShapeKind::ditch:
-      width = random.uniform(0.25, 0.6);
-      length = random.uniform(1.0, 3.0);
-      shape.sharpness_ = random.uniform(0.3, 0.8);
-      shape.detail_ = random.uniform(-0.08, 0.08);
-      break;
-    case ShapeKind::mound:
-    case ShapeKind::hollow:
-      width = random.uniform(0.8, 2.5);
-      length = width * random.uniform(1.0, 1.6);
-      irregularity = 0.1;
-      break;
-  }
-  shape.semi_axes_ = {length, width};
-  shape.draw_outline(random, irregularity);
-  const double largest = *std::max_element(shape.outline_.begin(), shape.outline_.end());
-  shape.reach_ = kind == ShapeKind::ditch ? std::hypot(length, width + 0.08 * length * length)
-                                          : length * largest * spread(kind);
-  if (!is_positive(kind) && !is_negative(kind)) {
-    shape.size_ = 1;
-    shape.size_ = std::tan(radians(random.uniform(8, 19))) / shape.steepest_slope();
-  }
-  return shape;
-}
-
-void Shape::draw_outline(Random& random, double irregularity) {
-  struct Wave {
-    double amplitude, phase;
-  };
-  std::array<Wave, 4> waves{};
-  double total = 0;
-  for (Wave& wave : waves) {
-    wave = {random.uniform(), random.uniform(0, 2 * kPi)};
-    total += wave.amplitude;
-  }
-  for (std::size_t i = 0; i < kDirections; ++i) {
-    const double angle = 2 * kPi * static_cast<double>(i) / kDirections;
-    outline_[i] = 1;
-    for (std::size_t k = 0; k < waves.size(); ++k) {
-      const double turns = static_cast<double>(k + 2);
-      outline_[i] +=
-          irregularity * waves[k].amplitude / total * std::cos(turns * angle + waves[k].phase);
-    }
-  }
 }
 
 double Shape::outline(double angle) const {
@@ -140,9 +48,9 @@ Eigen::Vector2d Shape::to_own_axes(const Eigen::Vector2d& point) const {
 }
 
 double Shape::radius(const Eigen::Vector2d& own) const {
-  if (kind_ == ShapeKind::ditch) {
+  if (is_long(kind_)) {
     if (std::abs(own.x()) >= semi_axes_.x()) return spread(kind_);
-    return std::abs(own.y() - detail_ * own.x() * own.x()) / semi_axes_.y();
+    return std::abs(own.y() - bend_ * own.x() * own.x()) / semi_axes_.y();
   }
   const Eigen::Vector2d unit = own.cwiseQuotient(semi_axes_);
   return unit.norm() / outline(std::atan2(unit.y(), unit.x()));
@@ -173,13 +81,34 @@ double Shape::profile(double radius, const Eigen::Vector2d& own) const {
       if (r >= 1) return rim * (1 - smooth_step(0, 1, outside));
       return -1 + (1 + rim) * r * r;
     }
-    case ShapeKind::ditch: {
-      const double taper = std::min(semi_axes_.y() * 1.5, semi_axes_.x());
-      const double end = smooth_step(semi_axes_.x() - taper, semi_axes_.x(), std::abs(own.x()));
-      return (smooth_step(1 - sharpness_, 1, r) - 1) * (1 - end);
-    }
+    case ShapeKind::pothole:
+      return std::pow(std::min(r, 1.0), sharpness_) - 1;
+    case ShapeKind::log:
+    case ShapeKind::ledge:
+    case ShapeKind::ditch:
+      return long_profile(r, own);
   }
   return 0;
+}
+
+double Shape::long_profile(double radius, const Eigen::Vector2d& own) const {
+  const double end = 1 - smooth_step(semi_axes_.x() - end_, semi_axes_.x(), std::abs(own.x()));
+  switch (kind_) {
+    case ShapeKind::log:
+      return end * std::sqrt(std::max(1 - radius * radius, 0.0));
+    case ShapeKind::ledge: {
+      if (detail_ <= 0) return end * (1 - smooth_step(1 - sharpness_, 1, radius));
+      const double across = (own.y() - bend_ * own.x() * own.x()) / semi_axes_.y();
+      return end * smooth_step(-1, sharpness_ - 1, across) *
+             std::min((1 - across) / (2 - sharpness_), 1.0);
+    }
+    default:
+      return end * (smooth_step(1 - sharpness_, 1, radius) - 1);
+  }
+}
+
+double Shape::margin() const {
+  return reach_ * (1 - 1 / spread(kind_));
 }
 
 double Shape::height(const Eigen::Vector2d& point) const {
@@ -195,13 +124,13 @@ bool Shape::inside(const Eigen::Vector2d& point) const {
 Footprint Shape::footprint() const {
   Footprint corners;
   constexpr int kCorners = 36;
-  if (kind_ == ShapeKind::ditch) {
+  if (is_long(kind_)) {
     for (int i = 0; i < kCorners; ++i) {
       const int half = kCorners / 2;
       const int step = i < half ? i : kCorners - 1 - i;
       const double x = semi_axes_.x() * (2.0 * step / (half - 1) - 1);
       const double side = i < half ? -semi_axes_.y() : semi_axes_.y();
-      corners.emplace_back(x, detail_ * x * x + side);
+      corners.emplace_back(x, bend_ * x * x + side);
     }
   } else {
     for (int i = 0; i < kCorners; ++i) {
@@ -215,22 +144,6 @@ Footprint Shape::footprint() const {
               sin_yaw_ * corner.x() + cos_yaw_ * corner.y()};
   }
   return corners;
-}
-
-double Shape::steepest_slope() const {
-  constexpr int kSteps = 100;
-  const double step = reach_ / kSteps;
-  double steepest = 0;
-  for (int i = -kSteps; i <= kSteps; ++i) {
-    for (int j = -kSteps; j <= kSteps; ++j) {
-      const Eigen::Vector2d point(i * step, j * step);
-      const double here = height(point);
-      const double dx = height(point + Eigen::Vector2d(step, 0)) - here;
-      const double dy = height(point + Eigen::Vector2d(0, step)) - here;
-      steepest = std::max(steepest, std::hypot(dx, dy) / step);
-    }
-  }
-  return steepest;
 }
 
 }  // namespace scree

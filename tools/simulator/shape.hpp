@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "scree/core/random.hpp"
@@ -16,32 +17,48 @@ enum class ShapeKind : std::uint8_t {
   block,    ///< tilted flat top, walls
   peak,     ///< pointed
   bump,     ///< round above and below, yet steeper than 30 degrees
+  log,      ///< lying half cylinder
+  ledge,    ///< long step, steep on one side or on both
   bowl,     ///< parabola
   pit,      ///< flat floor, walls
-  crater,   ///< bowl with a rim thrown up around it
-  ditch,    ///< long, gently bent, tapering off at both ends
+  pothole,  ///< small bowl with steep sides
+  crater,   ///< wide bowl, with or without a rim thrown up around it
+  ditch,    ///< long, straight or bent, its ends steep or tapering
   mound,    ///< no obstacle: smooth
   hollow    ///< no obstacle: smooth
 };
+inline constexpr std::size_t kShapeKinds = 13;
 std::string_view name_of(ShapeKind kind);
 
 constexpr bool is_positive(ShapeKind kind) {
-  return kind <= ShapeKind::bump;
+  return kind <= ShapeKind::ledge;
 }
 constexpr bool is_negative(ShapeKind kind) {
   return kind >= ShapeKind::bowl && kind <= ShapeKind::ditch;
 }
 
+constexpr bool is_long(ShapeKind kind) {
+  return kind == ShapeKind::log || kind == ShapeKind::ledge || kind == ShapeKind::ditch;
+}
+
+/// Heights or depths to draw from, metres.
+struct SizeRange {
+  double low, high;
+};
+
 /// Height of one feature above the ground without it, in its own axes (origin at its centre).
 class Shape {
 public:
-  /// Draws size, proportions and outline for this kind: rocks 0.15-1.2 m high, holes 0.2-1.0 m
-  /// deep, mounds and hollows at most 8-19 degrees steep.
-  static Shape draw(ShapeKind kind, Random& random);
+  /// Draws size, proportions and outline for this kind: rocks 0.15-1.2 m high (logs and ledges up
+  /// to 0.5 m), holes 0.2-1.0 m deep, mounds and hollows at most 8-19 degrees steep.
+  /// @param size instead of the kind's own range
+  static Shape draw(ShapeKind kind, Random& random, std::optional<SizeRange> size = std::nullopt);
 
   ShapeKind kind() const { return kind_; }
   /// Beyond this distance from the centre height() is 0, metres.
   double reach() const { return reach_; }
+  /// How far beyond its footprint it changes the ground (the rim of a crater), metres.
+  double margin() const;
   /// Metres, below zero in a hole; 0 outside the reach.
   double height(const Eigen::Vector2d& point) const;
   /// Whether the point lies inside the outline (for a crater: inside its rim's crest).
@@ -52,20 +69,27 @@ private:
   static constexpr std::size_t kDirections = 256;
 
   Eigen::Vector2d to_own_axes(const Eigen::Vector2d& point) const;
+  void draw_size(Random& random, std::optional<SizeRange> size);
+  void draw_rock(Random& random);
+  void draw_hole(Random& random);
   /// Distance from the centre in units of the outline's, 0 at the centre and 1 on the outline; for
-  /// a ditch distance from its middle line.
+  /// a long shape distance from its middle line.
   double radius(const Eigen::Vector2d& own) const;
   double outline(double angle) const;
   double profile(double radius, const Eigen::Vector2d& own) const;
-  void draw_outline(Random& random, double irregularity);
+  double long_profile(double radius, const Eigen::Vector2d& own) const;
+  void draw_outline(Random& random);
   double steepest_slope() const;
 
   ShapeKind kind_ = ShapeKind::boulder;
   double size_ = 0;                  ///< height or depth, metres, above zero
   Eigen::Vector2d semi_axes_{1, 1};  ///< half length, half width, metres
   double cos_yaw_ = 1, sin_yaw_ = 0;
+  double irregularity_ = 0.2;
   double sharpness_ = 1;  ///< of the flanks; its meaning depends on the kind
-  double detail_ = 0;     ///< tilt of a block, rim of a crater, bend of a ditch
+  double detail_ = 0;     ///< tilt of a block, rim of a crater, 1: ledge with a ramp on one side
+  double bend_ = 0;       ///< of the middle line of a long shape, 1/metres
+  double end_ = 0.05;     ///< length over which a long shape ends, metres
   double reach_ = 0;
   std::array<double, kDirections> outline_{};
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "scree/core/pose.hpp"
 #include "simulator/noise.hpp"
@@ -11,7 +12,14 @@ namespace scree {
 namespace {
 
 /// Each part of a terrain draws from a stream of its own, so that changing one leaves the others.
-enum Stream : std::uint64_t { kGround = 1, kRoughness = 100, kFeatures = 200, kMaterial = 300 };
+enum Stream : std::uint64_t {
+  kGround = 1,
+  kRoughness = 100,
+  kFeatures = 200,
+  kMaterial = 300,
+  kUnevenness = 400,
+  kTufts = 500
+};
 
 double smooth(double t) {
   const double x = std::clamp(t, 0.0, 1.0);
@@ -51,6 +59,22 @@ Terrain::Terrain(const TerrainSettings& settings, std::uint64_t seed)
   place_features(seed);
   paint(seed);
   shift_origin();
+  grow_tufts(seed);
+}
+
+void Terrain::add_waves(std::span<const double> wavelengths,
+                        const std::function<double(double)>& gain, std::uint64_t seed,
+                        std::uint64_t stream) {
+  for (const double wavelength : wavelengths) {
+    const GradientNoise noise(Random(seed, ++stream), settings_.size, wavelength);
+    const double height = gain(wavelength);
+    for (std::size_t row = 0; row < vertices_; ++row) {
+      for (std::size_t column = 0; column < vertices_; ++column) {
+        height_[row * vertices_ + column] +=
+            static_cast<float>(height * noise(coordinate(column), coordinate(row)));
+      }
+    }
+  }
 }
 
 void Terrain::roll_ground(std::uint64_t seed) {
@@ -58,17 +82,9 @@ void Terrain::roll_ground(std::uint64_t seed) {
   const double slope =
       std::tan(radians(random.uniform(settings_.gentlest_slope_deg, settings_.steepest_slope_deg)));
   const double smoothness = random.uniform(1.1, 1.6);  // height of an octave: wavelength to this
-  std::uint64_t octave = 0;
-  for (const double wavelength : {18.0, 9.0, 4.5, 2.2}) {
-    const GradientNoise noise(Random(seed, kGround + ++octave), settings_.size, wavelength);
-    const double gain = std::pow(wavelength, smoothness);
-    for (std::size_t row = 0; row < vertices_; ++row) {
-      for (std::size_t column = 0; column < vertices_; ++column) {
-        height_[row * vertices_ + column] +=
-            static_cast<float>(gain * noise(coordinate(column), coordinate(row)));
-      }
-    }
-  }
+  constexpr std::array kWavelengths = {18.0, 9.0, 4.5, 2.2};
+  add_waves(
+      kWavelengths, [&](double w) { return std::pow(w, smoothness); }, seed, kGround);
   if (settings_.level_radius > 0) {
     const float middle = height_[(vertices_ / 2) * (vertices_ + 1)];
     for (std::size_t row = 0; row < vertices_; ++row) {
@@ -86,56 +102,35 @@ void Terrain::roll_ground(std::uint64_t seed) {
 
 void Terrain::roughen_ground(std::uint64_t seed) {
   const double most = settings_.roughness * Random(seed, kRoughness).uniform(0.3, 1);
-  std::uint64_t octave = 0;
-  for (const double wavelength : {0.6, 0.25}) {
-    const GradientNoise noise(Random(seed, kRoughness + ++octave), settings_.size, wavelength);
-    const double gain = most * wavelength / 0.6;
-    for (std::size_t row = 0; row < vertices_; ++row) {
-      for (std::size_t column = 0; column < vertices_; ++column) {
-        height_[row * vertices_ + column] +=
-            static_cast<float>(gain * noise(coordinate(column), coordinate(row)));
-      }
-    }
-  }
+  constexpr std::array kStones = {0.6, 0.25};
+  add_waves(
+      kStones, [&](double w) { return most * w / 0.6; }, seed, kRoughness);
+  if (settings_.unevenness <= 0) return;
+  // The share of each octave falls with its wavelength, or short ones would be obstacles; together
+  // they have the wanted standard deviation, of which gradient noise has 0.25.
+  Random random(seed, kUnevenness);
+  const double smoothness = random.uniform(0.7, 1.3);
+  constexpr std::array kUneven = {2.0, 1.1, 0.6, 0.3};
+  double sum = 0;
+  for (const double w : kUneven) sum += std::pow(w, 2 * smoothness);
+  const double unit = settings_.unevenness / (0.25 * std::sqrt(sum));
+  add_waves(
+      kUneven, [&](double w) { return unit * std::pow(w, smoothness); }, seed, kUnevenness);
 }
 
 void Terrain::place_features(std::uint64_t seed) {
-  if (settings_.clear_radius > 0) taken_.push_back({{0, 0}, settings_.clear_radius});
-  const auto place_all = [&](int count, ShapeKind first, ShapeKind last, std::uint64_t stream) {
-    Random random(seed, kFeatures + stream);
-    const auto kinds = static_cast<std::size_t>(last) - static_cast<std::size_t>(first) + 1;
-    std::vector<Shape> shapes;
-    for (int i = 0; i < count; ++i) {
-      const std::size_t kind = static_cast<std::size_t>(first) + random.index(kinds);
-      shapes.push_back(Shape::draw(static_cast<ShapeKind>(kind), random));
-    }
-    // Large ones first, while there is room for them.
-    std::stable_sort(shapes.begin(), shapes.end(),
-                     [](const Shape& a, const Shape& b) { return a.reach() > b.reach(); });
-    for (const Shape& shape : shapes) {
-      constexpr int kTries = 200;
-      for (int i = 0; i < kTries && !try_to_place(shape, random); ++i) continue;
-    }
-  };
-  place_all(settings_.negative, ShapeKind::bowl, ShapeKind::ditch, 1);
-  place_all(settings_.positive, ShapeKind::boulder, ShapeKind::bump, 2);
-  place_all(settings_.smooth, ShapeKind::mound, ShapeKind::hollow, 3);
+  Random random(seed, kFeatures);
+  std::vector<PlacedShape> placed = lay_out_features(settings_, seed);
+  if (placed.size() > kMostFeatures) placed.resize(kMostFeatures);
+  for (const PlacedShape& shape : placed) stamp(shape, random);
 }
 
-bool Terrain::try_to_place(const Shape& shape, Random& random) {
-  const double within = std::min(settings_.placed_within, half_) - shape.reach();
-  if (within <= 0 || features_.size() == kMostFeatures) return false;
-  const Eigen::Vector2d center(random.uniform(-within, within), random.uniform(-within, within));
-  for (const Disc& disc : taken_) {
-    if ((disc.center - center).norm() < disc.radius + shape.reach() + settings_.gap) return false;
-  }
-  taken_.push_back({center, shape.reach()});
-  stamp(shape, center, random);
-  return true;
-}
-
-void Terrain::stamp(const Shape& shape, const Eigen::Vector2d& center, Random& random) {
+void Terrain::stamp(const PlacedShape& placed, Random& random) {
+  const Shape& shape = placed.shape;
+  const Eigen::Vector2d& center = placed.center;
   TerrainFeature feature;
+  feature.partner = placed.partner + 1;
+  feature.is_small = placed.is_small;
   feature.id = static_cast<int>(features_.size()) + 1;
   feature.shape = shape.kind();
   if (is_positive(shape.kind())) feature.kind = ObstacleKind::positive;
@@ -171,7 +166,7 @@ void Terrain::stamp(const Shape& shape, const Eigen::Vector2d& center, Random& r
         if (further) feature.height = extra;
       }
       height_[index] += static_cast<float>(extra);
-      relief_[index] = static_cast<float>(extra);
+      if (extra != 0) relief_[index] = static_cast<float>(extra);
     }
   }
   ground /= static_cast<double>(std::max<std::size_t>(inside, 1));
@@ -203,6 +198,35 @@ void Terrain::shift_origin() {
   const float origin = height_[(vertices_ / 2) * (vertices_ + 1)];
   for (float& height : height_) height -= origin;
   for (TerrainFeature& feature : features_) feature.center.z() -= static_cast<double>(origin);
+}
+
+void Terrain::grow_tufts(std::uint64_t seed) {
+  if (settings_.tuft_cover <= 0) return;
+  Random random(seed, kTufts);
+  const double tallest = random.uniform(0.12, 0.45);
+  const double densest = random.uniform(3, 12);
+  const GradientNoise meadows(Random(seed, kTufts + 1), settings_.size, 5);
+  std::vector<Tuft> tufts;
+  // Overlapping tufts cover less than the sum of their areas.
+  const double wanted = -std::log(1 - std::min(settings_.tuft_cover, 0.9)) * 4 * half_ * half_;
+  for (double covered = 0; covered < wanted;) {
+    Tuft tuft;
+    tuft.radius = random.uniform(0.06, 0.3);
+    covered += std::numbers::pi * tuft.radius * tuft.radius;
+    const double x = random.uniform(-half_, half_);
+    const double y = random.uniform(-half_, half_);
+    // Denser in some places: every second one stands only where the meadow is.
+    if (random.chance(0.5) && meadows(x, y) < 0) continue;
+    if (const int id = feature_at(x, y);
+        id != 0 && features_[static_cast<std::size_t>(id) - 1].kind) {
+      continue;
+    }
+    tuft.base = {x, y, height(x, y)};
+    tuft.height = tallest * random.uniform(0.35, 1);
+    tuft.density = densest * random.uniform(0.3, 1);
+    tufts.push_back(tuft);
+  }
+  tufts_ = Tufts(std::move(tufts), settings_.size);
 }
 
 Terrain::Place Terrain::place(double x, double y) const {
@@ -245,12 +269,23 @@ int Terrain::feature_at(double x, double y) const {
   return feature_[place(x, y).index];
 }
 
-std::vector<int> obstacle_ids(const Terrain& terrain) {
+namespace {
+
+std::vector<int> ids_of(const Terrain& terrain, bool is_small) {
   std::vector<int> ids;
   for (const TerrainFeature& feature : terrain.features()) {
-    if (feature.kind) ids.push_back(feature.id);
+    if (feature.kind && feature.is_small == is_small) ids.push_back(feature.id);
   }
   return ids;
+}
+
+}  // namespace
+
+std::vector<int> obstacle_ids(const Terrain& terrain) {
+  return ids_of(terrain, false);
+}
+std::vector<int> small_ids(const Terrain& terrain) {
+  return ids_of(terrain, true);
 }
 
 }  // namespace scree

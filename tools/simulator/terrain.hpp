@@ -3,42 +3,34 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "scree/core/obstacle.hpp"
+#include "simulator/feature_layout.hpp"
 #include "simulator/shape.hpp"
+#include "simulator/terrain_settings.hpp"
+#include "simulator/tufts.hpp"
 
 namespace scree {
-
-/// How a terrain is drawn. Lengths in metres.
-struct TerrainSettings {
-  double size = 40;               ///< edge of the square, centred on the origin
-  double cell = 0.02;             ///< distance of the raster's heights
-  double gentlest_slope_deg = 4;  ///< the rolling ground's steepest slope is drawn between these
-  double steepest_slope_deg = 15;
-  double roughness = 0.012;   ///< most height of stones and grass roots too small to matter
-  int positive = 11;          ///< rocks
-  int negative = 7;           ///< holes
-  int smooth = 8;             ///< mounds and hollows that are no obstacles
-  double placed_within = 18;  ///< features lie in the square from -this to this
-  double gap = 0.6;           ///< least distance of two features' rims
-  double clear_radius = 0;    ///< no feature this close to the origin, where the robot stands
-  double level_radius = 0;    ///< the ground is level this far around the origin
-};
 
 /// One thing on the terrain.
 struct TerrainFeature {
   int id = 0;  ///< from 1
   ShapeKind shape = ShapeKind::boulder;
   std::optional<ObstacleKind> kind;  ///< none: no obstacle
+  int partner = 0;                   ///< id of the obstacle 0.3-0.6 m beside it, 0 for none
+  bool is_small = false;             ///< a stone or dent: finding it is neither asked for nor wrong
   Eigen::Vector3d center;            ///< middle of the footprint, halfway up or down
   double height = 0;                 ///< above the ground without it; below zero: depth
   Footprint footprint;
 };
 
-/// Rough ground with rocks and holes whose truth is known, as a raster of heights. World frame: z
-/// up, origin at the middle of the square on the ground. The same seed gives the same terrain.
+/// Rough ground with rocks and holes whose truth is known, as a raster of heights, and tufts of
+/// grass on it. World frame: z up, origin at the middle of the square on the ground. The same seed
+/// gives the same terrain.
 class Terrain {
 public:
   /// Further ones are not placed: a vertex of the raster names its feature in one byte.
@@ -48,6 +40,7 @@ public:
 
   const TerrainSettings& settings() const { return settings_; }
   const std::vector<TerrainFeature>& features() const { return features_; }
+  const Tufts& tufts() const { return tufts_; }
   double half_size() const { return half_; }
   bool covers(double x, double y) const { return std::abs(x) < half_ && std::abs(y) < half_; }
 
@@ -79,11 +72,13 @@ private:
   double bilinear(const std::vector<float>& raster, double x, double y) const;
   void roll_ground(std::uint64_t seed);
   void roughen_ground(std::uint64_t seed);
+  void add_waves(std::span<const double> wavelengths, const std::function<double(double)>& gain,
+                 std::uint64_t seed, std::uint64_t stream);
   void place_features(std::uint64_t seed);
-  bool try_to_place(const Shape& shape, Random& random);
-  void stamp(const Shape& shape, const Eigen::Vector2d& center, Random& random);
+  void stamp(const PlacedShape& placed, Random& random);
   void paint(std::uint64_t seed);
   void shift_origin();
+  void grow_tufts(std::uint64_t seed);
 
   TerrainSettings settings_;
   double half_;
@@ -91,14 +86,12 @@ private:
   std::vector<float> height_, relief_;
   std::vector<std::uint8_t> feature_, reflectivity_;
   std::vector<TerrainFeature> features_;
-  struct Disc {
-    Eigen::Vector2d center;
-    double radius;
-  };
-  std::vector<Disc> taken_;
+  Tufts tufts_;
 };
 
-/// All rocks and holes of a terrain.
+/// All rocks and holes of a terrain that are asked for.
 std::vector<int> obstacle_ids(const Terrain& terrain);
+/// The stones and dents.
+std::vector<int> small_ids(const Terrain& terrain);
 
 }  // namespace scree

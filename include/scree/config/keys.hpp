@@ -33,6 +33,24 @@ void for_each_detect_key(std::string_view table, Detect& detect, Visit&& visit) 
   key("clearance", detect.clearance, "m", 0, 100,
       "points higher than this above the lowest of their column are passed under and go (branches, "
       "ceilings); 0 keeps all");
+  key("ground", detect.ground, "", 0, 0,
+      "what heights are measured from: ring is the median of the points around each cluster, "
+      "surface "
+      "the ground that is spanned under rocks and over holes");
+  key("max_ground_cells", detect.max_ground_cells, "cells", 64, 1 << 26,
+      "largest raster of the ground's surface; a wider cloud gets larger cells. Sets the memory "
+      "taken at start");
+  key("ground_cell", detect.ground_cell, "m", 0.01, 10,
+      "edge of its cells: smaller follows the ground closer and needs denser points");
+  key("ground_slope", detect.ground_slope, "m/m", 0.01, 100,
+      "steeper cells are no ground: lower finds flatter obstacles and more slopes of the ground");
+  key("ground_tolerance", detect.ground_tolerance, "m", 0.001, 10,
+      "a smooth patch this close to the continuation of the ground belongs to it");
+  key("candidates", detect.candidates, "", 0, 0,
+      "what clusters are made of: edges are the steep points (paper), bodies all points above or "
+      "below the ground's surface");
+  key("body_height", detect.body_height, "m", 0, 10,
+      "least height above or depth below the surface of a body's points");
   key("kernel_spacing", detect.kernel_spacing, "m", 0.001, 10,
       "d of the Sobel operator: distance of the eight positions around a point (paper fig. 3)");
   key("kernel_radius", detect.kernel_radius, "m", 0.001, 10,

@@ -16,6 +16,12 @@ namespace scree {
 enum class LidarModel : std::uint8_t { vlp16, puck_lite, puck_hires };
 enum class ByteOrder : std::uint8_t { little_endian, big_endian };
 enum class EncoderKind : std::uint8_t { counter, speed };
+/// What heights are measured from: the median of a ring around each cluster (the paper's way, as
+/// far as it says), or the ground's surface under it.
+enum class GroundReference : std::uint8_t { ring, surface };
+/// Which points clusters are made of: the paper's edge points, or all that stand above or lie below
+/// the ground's surface.
+enum class Candidates : std::uint8_t { edges, bodies };
 enum class ClusterMethod : std::uint8_t { supervoxel, euclidean };
 
 /// The words for an enum in a configuration file.
@@ -34,6 +40,14 @@ template <>
 inline constexpr std::array kNames<EncoderKind> = {
     std::pair{std::string_view("counter"), EncoderKind::counter},
     std::pair{std::string_view("speed"), EncoderKind::speed}};
+template <>
+inline constexpr std::array kNames<GroundReference> = {
+    std::pair{std::string_view("ring"), GroundReference::ring},
+    std::pair{std::string_view("surface"), GroundReference::surface}};
+template <>
+inline constexpr std::array kNames<Candidates> = {
+    std::pair{std::string_view("edges"), Candidates::edges},
+    std::pair{std::string_view("bodies"), Candidates::bodies}};
 template <>
 inline constexpr std::array kNames<ClusterMethod> = {
     std::pair{std::string_view("supervoxel"), ClusterMethod::supervoxel},
@@ -86,8 +100,8 @@ struct EncoderSettings {
   double scale = 0.000157;
 };
 
-/// The stages of the paper. There is one set for reconstructed clouds and one for single sweeps,
-/// because every length follows the density of the points.
+/// The stages of the paper and ours beside them. There is one set for reconstructed clouds and one
+/// for single sweeps, because every length follows the density of the points.
 struct DetectSettings {
   int max_points = 1 << 20;
   int max_edge_points = 1 << 18;
@@ -96,6 +110,15 @@ struct DetectSettings {
   bool voxel_grid = true;
   double leaf_size = 0.0592;
   double clearance = 2.0;
+
+  GroundReference ground = GroundReference::ring;
+  int max_ground_cells = 1 << 19;
+  double ground_cell = 0.10;
+  double ground_slope = 0.36;
+  double ground_tolerance = 0.10;
+
+  Candidates candidates = Candidates::edges;
+  double body_height = 0.06;
 
   double kernel_spacing = 0.10;
   double kernel_radius = 0.11;
@@ -120,10 +143,16 @@ struct DetectSettings {
   double ground_inner = 0.15;
   double ground_outer = 0.60;
 
-  std::string network = "network_cloud.txt";
+  std::string network = "network_paper.txt";
   double min_confidence = 0.5;
 
-  static DetectSettings for_cloud() { return {}; }
+  bool uses_surface() const {
+    return ground == GroundReference::surface || candidates == Candidates::bodies;
+  }
+
+  /// The method as the paper has it, on clouds as dense as the paper's: the defaults above.
+  static DetectSettings for_paper() { return {}; }
+  static DetectSettings for_cloud();
   static DetectSettings for_sweep();
 };
 

@@ -43,10 +43,10 @@ private:
   FixedVector<std::uint32_t> members_, place_;
 };
 
-/// F1-F5 of the paper (section 3.2, fig. 8). Heights are above `cluster.ground`. The normal n at a
+/// F1-F5 of the paper (section 3.2, fig. 8), from the points' own heights. The normal n at a
 /// point is (slope_x, slope_y, -1), into the ground: its horizontal part points uphill, so the
 /// angle to m, the horizontal vector to the axis through the centre of gravity, is acute on a bump
 /// and obtuse in a bowl. A right angle counts for neither.
-Features measure(const EdgePoints& edges, std::span<const std::uint32_t> members, float ground);
+Features measure(const EdgePoints& edges, std::span<const std::uint32_t> members);
 
 }  // namespace scree

@@ -9,11 +9,13 @@
 #include "scree/detect/elevation_gradient.hpp"
 #include "scree/detect/euclidean_clusters.hpp"
 #include "scree/detect/ground_height.hpp"
+#include "scree/detect/ground_surface.hpp"
 #include "scree/detect/network.hpp"
 #include "scree/detect/overhangs.hpp"
 #include "scree/detect/plane_cells.hpp"
 #include "scree/detect/supervoxels.hpp"
 #include "scree/detect/suppression.hpp"
+#include "scree/detect/surroundings.hpp"
 #include "scree/detect/voxel_grid.hpp"
 
 namespace scree {
@@ -55,6 +57,7 @@ public:
   const PlaneCells& cells() const { return cells_; }
   std::span<const float> slope_x() const { return slope_x_; }
   std::span<const float> slope_y() const { return slope_y_; }
+  const GroundSurface& surface() const { return surface_; }
   const EdgePoints& edges() const { return edges_; }
   const EdgePoints& kept() const { return settings_.suppression ? kept_ : edges_; }
   const Supervoxels& supervoxels() const { return supervoxels_; }
@@ -63,7 +66,9 @@ public:
 
 private:
   void thin(PointView cloud);
+  void choose_candidates();
   void find_edges();
+  const EdgePoints& parted();
   void find_clusters();
   void measure_clusters();
   void recognise(FixedVector<Obstacle>& obstacles);
@@ -79,8 +84,9 @@ private:
   ElevationGradient gradient_;
   PlaneCells cells_;
   FixedVector<float> slope_x_, slope_y_;  // of the sorted points of cells_
-  FixedVector<std::uint8_t> is_edge_;
-  EdgePoints edges_, kept_;
+  FixedVector<float> height_;             // of the same, above the surface
+  FixedVector<std::uint8_t> is_candidate_, is_edge_;
+  EdgePoints edges_, kept_, parted_;
   Suppression suppression_;
   PlaneCells edge_cells_;
   Supervoxels supervoxels_;
@@ -88,6 +94,8 @@ private:
   FixedVector<std::uint32_t> labels_, sizes_;
   Clusters clusters_;
   GroundHeight ground_;
+  GroundSurface surface_;
+  Surroundings surroundings_;
 };
 
 }  // namespace scree

@@ -5,24 +5,26 @@
 namespace scree {
 
 /// Points on steep ground, with the slope of the elevation there (metres per metre). The vector
-/// (slope_x, slope_y, -1) is the surface normal that points into the ground.
+/// (slope_x, slope_y, -1) is the surface normal that points into the ground. Heights are above the
+/// ground, in metres, once it is known.
 struct EdgePoints {
   PointCloud points;
-  FixedVector<float> slope_x, slope_y;
+  FixedVector<float> slope_x, slope_y, height;
 
   explicit EdgePoints(std::size_t capacity)
-      : points(capacity), slope_x(capacity), slope_y(capacity) {}
+      : points(capacity), slope_x(capacity), slope_y(capacity), height(capacity) {}
 
   std::size_t size() const { return points.size(); }
   void clear() {
     points.clear();
     slope_x.clear();
     slope_y.clear();
+    height.clear();
   }
   /// False when full; the point is then not taken.
-  bool push_back(PointView from, std::size_t i, float along_x, float along_y) {
+  bool push_back(PointView from, std::size_t i, float along_x, float along_y, float above = 0) {
     return points.push_back(from.x[i], from.y[i], from.z[i], from.reflectivity[i]) &&
-           slope_x.push_back(along_x) && slope_y.push_back(along_y);
+           slope_x.push_back(along_x) && slope_y.push_back(along_y) && height.push_back(above);
   }
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 #include "scree/detect/plane_cells.hpp"
@@ -19,7 +20,9 @@ struct ElevationGradient {
   /// Writes for every sorted point of `cells` the slope of the elevation along x and y (metres per
   /// metre); both NaN where one of the eight positions has too few neighbours: not known is not
   /// zero.
-  void compute(const PlaneCells& cells, std::span<float> slope_x, std::span<float> slope_y) const;
+  /// @param wanted where it is not empty: zero for points whose slope nobody asks for; they get NaN
+  void compute(const PlaneCells& cells, std::span<const std::uint8_t> wanted,
+               std::span<float> slope_x, std::span<float> slope_y) const;
 };
 
 }  // namespace scree

@@ -5,10 +5,24 @@
 
 namespace scree {
 
-/// F1-F5 of the paper (section 3.2), in this order. Heights in metres above the ground around the
-/// cluster; F4 and F5 count points.
-enum Feature : std::size_t { mean_height, max_height, min_height, acute_count, obtuse_count };
-inline constexpr std::size_t kFeatures = 5;
+/// What the network is told of a cluster. First F1-F5 of the paper (section 3.2): heights in metres
+/// above the ground, and counts of points. The others are ours and need the ground's surface; they
+/// are 0 without it.
+enum Feature : std::size_t {
+  mean_height,
+  max_height,
+  min_height,
+  acute_count,
+  obtuse_count,
+  box_length,     ///< metres
+  box_width,      ///< metres
+  steepness,      ///< mean slope of its points, metres per metre
+  rim_share,      ///< of its cells: next to something on the other side of the ground
+  unseen_share,   ///< of the cells of its box: without a point
+  through_share,  ///< of its cells: with points on the ground as well; tufts let light through
+  kFeatures
+};
+inline constexpr std::size_t kPaperFeatures = 5;
 using Features = std::array<float, kFeatures>;
 
 }  // namespace scree

@@ -33,30 +33,30 @@ enum class InputForm : std::uint8_t {
   log1p  ///< log(1 + x); for counts, which span decades from a sparse sweep to a dense cloud
 };
 
-/// The paper's network (section 3.1, fig. 9): F1-F5 in, one hidden layer of sigmoids, two sigmoids
-/// out. Each input is (form(feature) - mean) / scale, cut to +-100. All in double, so that a file
-/// saved and loaded gives the same answers bit for bit.
+/// The paper's network (section 3.1, fig. 9): features in, the paper's five or more, one hidden
+/// layer of sigmoids, two sigmoids out. Each input is (form(feature) - mean) / scale, cut to +-100.
+/// All in double, so that a file saved and loaded gives the same answers bit for bit.
 class Network {
 public:
-  static constexpr std::size_t kInputs = kFeatures;
   static constexpr std::size_t kOutputs = 2;  ///< positive, negative
   static constexpr std::size_t kMaxHidden = 64;
   /// Weights beyond this are refused: below it no sum can overflow.
   static constexpr double kMaxWeight = 1e6;
 
-  using Inputs = std::array<double, kInputs>;
+  using Inputs = std::array<double, kFeatures>;  ///< the first inputs() of them count
   using Outputs = std::array<double, kOutputs>;
-  using Forms = std::array<InputForm, kInputs>;
+  using Forms = std::array<InputForm, kFeatures>;
 
-  /// Heights enter raw, counts as logarithms. Measured on held-out clouds the two forms of the
+  /// Counts enter as logarithms, the rest raw. Measured on held-out clouds the two forms of the
   /// counts cannot be told apart: F1 0.983 as logarithms and 0.985 raw at the density trained on,
   /// 0.90 both at a third of it. The logarithm is taken because it grows least beyond what was
   /// trained.
   static constexpr Forms kDefaultForms = {InputForm::raw, InputForm::raw, InputForm::raw,
                                           InputForm::log1p, InputForm::log1p};
 
-  /// All weights zero. @pre 1 <= hidden <= kMaxHidden
-  explicit Network(std::size_t hidden = 1);
+  /// All weights zero. Takes the first `inputs` of the features.
+  /// @pre 1 <= hidden <= kMaxHidden, 1 <= inputs <= kFeatures
+  explicit Network(std::size_t hidden = 1, std::size_t inputs = kPaperFeatures);
 
   /// Reads a text file as save() writes it. The error names the file, the line and what is wrong
   /// with it: another format, a wrong shape, missing or extra numbers, a number that is not finite
@@ -72,26 +72,27 @@ public:
   Answer operator()(const Features& features) const noexcept;
 
   std::size_t hidden() const noexcept { return hidden_; }
+  std::size_t inputs() const noexcept { return inputs_; }
   /// Features as the first layer sees them.
   Inputs normalised(const Features& features) const noexcept;
   /// Both layers; `hidden_values` has room for hidden() answers of the hidden layer.
   Outputs forward(const Inputs& inputs, std::span<double> hidden_values) const noexcept;
 
-  /// Row by row: for each hidden unit its kInputs weights and its bias, then for each output its
+  /// Row by row: for each hidden unit its inputs() weights and its bias, then for each output its
   /// hidden() weights and its bias.
   std::span<const double> weights() const noexcept { return weights_; }
   std::span<double> weights() noexcept { return weights_; }
   /// Where in weights() the row of an output begins.
   std::size_t output_row(std::size_t output) const noexcept {
-    return hidden_ * (kInputs + 1) + output * (hidden_ + 1);
+    return hidden_ * (inputs_ + 1) + output * (hidden_ + 1);
   }
 
   Forms forms = kDefaultForms;
-  Inputs mean{};                ///< of each input after its form
-  Inputs scale{1, 1, 1, 1, 1};  ///< its standard deviation, above zero
+  Inputs mean{};   ///< of each input after its form
+  Inputs scale{};  ///< its standard deviation, above zero
 
 private:
-  std::size_t hidden_;
+  std::size_t hidden_, inputs_;
   std::vector<double> weights_;
 };
 

@@ -23,7 +23,7 @@ EdgePoints flank(float height, float radius) {
     one.push_back(radius * share * std::cos(angle), radius * share * std::sin(angle),
                   height * (1 - share), 10);
     const float slope = -height / radius;  // outward
-    edges.push_back(one, 0, slope * std::cos(angle), slope * std::sin(angle));
+    edges.push_back(one, 0, slope * std::cos(angle), slope * std::sin(angle), one.z[0]);
   }
   return edges;
 }
@@ -36,18 +36,18 @@ std::vector<std::uint32_t> all_of(const EdgePoints& edges) {
 
 TEST(Features, AnglesAreAcuteOnABumpAndObtuseInABowl) {
   const EdgePoints bump = flank(0.5F, 1), bowl = flank(-0.5F, 1);
-  const Features of_bump = measure(bump, all_of(bump), 0);
+  const Features of_bump = measure(bump, all_of(bump));
   EXPECT_EQ(of_bump[acute_count], 360);
   EXPECT_EQ(of_bump[obtuse_count], 0);
-  const Features of_bowl = measure(bowl, all_of(bowl), 0);
+  const Features of_bowl = measure(bowl, all_of(bowl));
   EXPECT_EQ(of_bowl[acute_count], 0);
   EXPECT_EQ(of_bowl[obtuse_count], 360);
 }
 
-TEST(Features, HeightsAreAboveTheGroundAroundNotTheOrigin) {
+TEST(Features, HeightsAreAboveTheGroundNotTheOrigin) {
   EdgePoints bump = flank(0.5F, 1);
   for (float& z : bump.points.z) z += 10;
-  const Features features = measure(bump, all_of(bump), 10);
+  const Features features = measure(bump, all_of(bump));
   EXPECT_NEAR(features[max_height], 0.35, 1e-4);
   EXPECT_NEAR(features[min_height], 0.5 * (1 - 0.3 - 0.6 * 6 / 7), 1e-4);
   EXPECT_GT(features[mean_height], features[min_height]);

@@ -14,7 +14,7 @@ constexpr float kInf = std::numeric_limits<float>::infinity();
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 DetectSettings small() {
-  DetectSettings settings;
+  DetectSettings settings = DetectSettings::for_paper();
   settings.max_points = 60'000;
   settings.max_edge_points = 30'000;
   settings.max_obstacles = 16;
@@ -30,8 +30,8 @@ Network by_angles() {
   std::ranges::fill(weights, 0.0);
   weights[acute_count] = 1;  // hidden unit 0: acute over obtuse
   weights[obtuse_count] = -1;
-  weights[Network::kInputs + 1 + acute_count] = -1;  // hidden unit 1: the reverse
-  weights[Network::kInputs + 1 + obtuse_count] = 1;
+  weights[kPaperFeatures + 1 + acute_count] = -1;  // hidden unit 1: the reverse
+  weights[kPaperFeatures + 1 + obtuse_count] = 1;
   for (std::size_t output = 0; output < 2; ++output) {
     weights[network.output_row(output) + output] = 20;
     weights[network.output_row(output) + 2] = -12;

@@ -35,7 +35,7 @@ struct Slopes {
 
 Slopes slopes_of(const PlaneCells& cells, const ElevationGradient& gradient) {
   Slopes slopes{std::vector<float>(cells.size()), std::vector<float>(cells.size())};
-  gradient.compute(cells, slopes.x, slopes.y);
+  gradient.compute(cells, {}, slopes.x, slopes.y);
   return slopes;
 }
 

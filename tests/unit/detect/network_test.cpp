@@ -38,14 +38,16 @@ std::string error_with(const std::string& from, const std::string& to) {
 }
 
 Network random_network(std::size_t hidden) {
-  Network network(hidden);
+  Network network(hidden, kFeatures);
   double value = 0.37;
   for (double& weight : network.weights()) {
     value = 3.9 * value * (1 - value);
     weight = 4 * value - 2;
   }
-  network.mean = {0.1, -0.3, 1.0 / 3, 2.5, 1e-7};
-  network.scale = {0.7, 0.1, 2.0 / 3, 1.9, 1.1};
+  for (std::size_t i = 0; i < kFeatures; ++i) {
+    network.mean[i] = 1.0 / 3 - 0.3 * static_cast<double>(i);
+    network.scale[i] = 0.1 + 2.0 / 3 * static_cast<double>(i);
+  }
   return network;
 }
 
@@ -82,7 +84,9 @@ TEST(Network, RefusalsNameFileLineAndReason) {
   EXPECT_THAT(error_with("scree_network 1", "pickle 1"),
               AllOf(HasSubstr("net.txt:2"), HasSubstr("'pickle' where 'scree_network' belongs")));
   EXPECT_THAT(error_with("scree_network 1", "scree_network 2"), HasSubstr("version 2 is not 1"));
-  EXPECT_THAT(error_with("inputs 5", "inputs 4"), HasSubstr("4 inputs, the features are 5"));
+  EXPECT_THAT(error_with("inputs 5", "inputs 99"), HasSubstr("99 inputs, there are"));
+  EXPECT_THAT(error_with("inputs 5", "inputs 0"), HasSubstr("0 inputs"));
+  EXPECT_THAT(error_with("inputs 5", "inputs 4"), HasSubstr("has 5 values and needs 4"));
   EXPECT_THAT(error_with("hidden 2", "hidden 65"), AllOf(HasSubstr(":4:"), HasSubstr("1 to 64")));
   EXPECT_THAT(error_with("hidden 2", "hidden 0"), HasSubstr("0 hidden units"));
   EXPECT_THAT(error_with("hidden 2", "hidden 99999999999"), HasSubstr("not a whole number"));

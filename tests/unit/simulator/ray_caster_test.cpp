@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "scree/core/pose.hpp"
-#include "simulator/cloud.hpp"
 
 namespace scree {
 namespace {
@@ -67,40 +66,6 @@ TEST(RayCaster, AgreesWithFineStepsOverRoughGround) {
     }
   }
   EXPECT_GT(hits, 1000);
-}
-
-TEST(ReconstructedCloud, LiesOnTheTerrainAndCoversWalls) {
-  TerrainSettings settings;
-  settings.size = 24;
-  settings.placed_within = 12;
-  const Terrain terrain(settings, 2);
-  CloudSettings cloud_settings;
-  cloud_settings.points = 200'000;
-  const PointCloud cloud = reconstructed_cloud(terrain, cloud_settings, 2);
-  ASSERT_EQ(cloud.size(), cloud_settings.points);
-  std::size_t far = 0;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const double ground =
-        terrain.height(static_cast<double>(cloud.x[i]), static_cast<double>(cloud.y[i]));
-    far += std::abs(static_cast<double>(cloud.z[i]) - ground) > 0.15 ? 1U : 0U;
-    EXPECT_LE(std::abs(cloud.x[i]), 12.1F);
-  }
-  EXPECT_GT(far, 50U);    // scattered points
-  EXPECT_LT(far, 3000U);  // these, and noise across the edges of walls
-}
-
-TEST(ReconstructedCloud, SameSeedSameBytes) {
-  TerrainSettings settings;
-  settings.size = 10;
-  settings.placed_within = 5;
-  const Terrain terrain(settings, 2);
-  CloudSettings cloud_settings;
-  cloud_settings.points = 5000;
-  const PointCloud a = reconstructed_cloud(terrain, cloud_settings, 2);
-  const PointCloud b = reconstructed_cloud(terrain, cloud_settings, 2);
-  const PointCloud c = reconstructed_cloud(terrain, cloud_settings, 3);
-  EXPECT_TRUE(std::equal(a.z.begin(), a.z.end(), b.z.begin()));
-  EXPECT_FALSE(std::equal(a.z.begin(), a.z.end(), c.z.begin()));
 }
 
 }  // namespace

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "scree/core/fixed_vector.hpp"
+#include "scree/core/point_cloud.hpp"
+#include "scree/detect/raster_fill.hpp"
+
+namespace scree {
+
+struct GroundSurfaceSettings {
+  float cell_size;  ///< of the raster, metres
+  float max_slope;  ///< steeper cells are no ground, metres per metre
+  float tolerance;  ///< a smooth patch this close to the ground's surface belongs to it, metres
+};
+
+/// The surface that the robot could drive on, under rocks and over holes. Cells of the plane that
+/// are nowhere steep make patches; the largest is ground, and so are those that lie in its
+/// continuation. What is left, the flanks and tops of rocks, the walls and floors of holes, is
+/// spanned from the ground around it. The paper has no such stage: its heights are above the
+/// surroundings of a cluster, which tilts on slopes and between two tall rocks.
+class GroundSurface {
+public:
+  GroundSurface(std::size_t max_points, std::size_t max_cells);
+
+  /// @pre finite points, no more than max_points of them. Where they spread over more than
+  /// max_cells, the cells are made larger.
+  void build(PointView points, const GroundSurfaceSettings& settings);
+
+  /// Of the last build; any place, also outside: there the nearest cell answers.
+  bool is_ground(float x, float y) const { return ground_[cell_at(x, y)] != 0; }
+  /// z of the surface, bilinear, metres.
+  float height(float x, float y) const;
+
+  // The raster, row by row, for those who walk over it.
+  std::size_t columns() const { return columns_; }
+  std::size_t rows() const { return rows_; }
+  float cell_size() const { return cell_; }
+  std::size_t cell_at(float x, float y) const;
+  /// Points in a cell; 0: not seen.
+  /// Whether one of its points lies within the tolerance of the surface.
+  bool shows_ground(std::size_t cell, float tolerance) const;
+  std::uint32_t points_in(std::size_t cell) const { return begin_[cell + 1] - begin_[cell]; }
+
+private:
+  void lay_out(PointView points, float cell_size);
+  void gather(PointView points);
+  void find_smooth_cells(float max_slope);
+  void find_patches(float max_slope);
+  void join_patches(float tolerance);
+  /// Mean height difference of the two neighbours of a cell (Sobel's 1-2-1 across), metres.
+  float rise(std::size_t cell, std::size_t along, std::size_t across) const;
+  float blurred(std::size_t cell) const;
+
+  float cell_ = 1, inverse_ = 1, low_x_ = 0, low_y_ = 0;
+  std::size_t columns_ = 0, rows_ = 0;
+  FixedVector<std::uint32_t> begin_;  // of each cell's points in z_, and one more
+  FixedVector<float> z_;              // of the points, cell by cell
+  FixedVector<float> median_;         // of each cell; NaN where there is no point
+  FixedVector<float> smooth_;         // scratch: blurred heights, then the ground's
+  FixedVector<std::uint8_t> ground_;
+  FixedVector<std::uint32_t> patch_;  // of each cell
+  FixedVector<std::uint32_t> queue_;
+  struct Patch {
+    std::uint32_t cells = 0;
+    float residual = 0;
+    bool is_ground = false;
+  };
+  FixedVector<Patch> patches_;
+  RasterFill fill_;
+};
+
+}  // namespace scree

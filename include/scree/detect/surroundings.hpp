@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "scree/detect/clusters.hpp"
+#include "scree/detect/ground_surface.hpp"
+
+namespace scree {
+
+/// The features beyond the paper's five: what lies in and around a cluster on the raster of the
+/// ground's surface.
+class Surroundings {
+public:
+  explicit Surroundings(std::size_t max_cells) : sides_(max_cells), visited_(max_cells) {}
+
+  /// Notes in which cells something stands above the ground or lies below it.
+  void build(const EdgePoints& edges, const GroundSurface& surface);
+
+  /// Sets the features from box_length on.
+  /// @param members of the cluster among the points given to build()
+  void measure(Cluster& cluster, std::span<const std::uint32_t> members, const EdgePoints& edges,
+               const GroundSurface& surface);
+
+private:
+  enum Side : std::uint8_t { above = 1, below = 2 };
+
+  bool borders_on(std::size_t cell, std::uint8_t side, std::size_t columns) const;
+
+  FixedVector<std::uint8_t> sides_;
+  FixedVector<std::uint32_t> visited_;  // number of the last cluster that counted the cell
+  std::uint32_t number_ = 0;
+};
+
+}  // namespace scree

@@ -1,0 +1,207 @@
+#include "scree/detect/ground_surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "scree/detect/supervoxels.hpp"
+
+namespace scree {
+namespace {
+
+constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+constexpr std::size_t kBorder = 2;  // empty cells all around, so that every cell has neighbours
+
+}  // namespace
+
+GroundSurface::GroundSurface(std::size_t max_points, std::size_t max_cells)
+    : begin_(max_cells + 2),
+      z_(max_points),
+      median_(max_cells),
+      smooth_(max_cells),
+      ground_(max_cells),
+      patch_(max_cells),
+      queue_(max_cells),
+      patches_(max_cells),
+      fill_(max_cells) {}
+
+void GroundSurface::build(PointView points, const GroundSurfaceSettings& settings) {
+  lay_out(points, settings.cell_size);
+  gather(points);
+  find_smooth_cells(settings.max_slope);
+  find_patches(settings.max_slope);
+  join_patches(settings.tolerance);
+}
+
+void GroundSurface::lay_out(PointView points, float cell_size) {
+  float high_x = 0, high_y = 0;
+  low_x_ = low_y_ = 0;
+  if (points.size() > 0) {
+    const auto [left, right] = std::ranges::minmax(points.x);
+    const auto [low, high] = std::ranges::minmax(points.y);
+    low_x_ = left, high_x = right, low_y_ = low, high_y = high;
+  }
+  const auto cells = [&](float low, float high) {
+    return static_cast<std::size_t>((high - low) / cell_) + 1 + 2 * kBorder;
+  };
+  for (cell_ = cell_size;; cell_ *= 2) {
+    columns_ = cells(low_x_, high_x);
+    rows_ = cells(low_y_, high_y);
+    if (columns_ * rows_ <= median_.capacity()) break;
+  }
+  inverse_ = 1 / cell_;
+  low_x_ -= static_cast<float>(kBorder) * cell_;
+  low_y_ -= static_cast<float>(kBorder) * cell_;
+}
+
+std::size_t GroundSurface::cell_at(float x, float y) const {
+  const auto index = [](float value, std::size_t count) {
+    return static_cast<std::size_t>(std::clamp(value, 0.0F, static_cast<float>(count - 1)));
+  };
+  return index((y - low_y_) * inverse_, rows_) * columns_ +
+         index((x - low_x_) * inverse_, columns_);
+}
+
+void GroundSurface::gather(PointView points) {
+  const std::size_t cells = columns_ * rows_;
+  // Counting sort: begin_[cell + 2] counts, then begin_[cell + 1] runs from each cell's first place
+  // to its last.
+  begin_.assign(cells + 2, 0);
+  for (std::size_t i = 0; i < points.size(); ++i) ++begin_[cell_at(points.x[i], points.y[i]) + 2];
+  for (std::size_t cell = 0; cell < cells; ++cell) begin_[cell + 2] += begin_[cell + 1];
+  z_.resize(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    z_[begin_[cell_at(points.x[i], points.y[i]) + 1]++] = points.z[i];
+  }
+  median_.resize(cells);
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    float* const first = z_.begin() + begin_[cell];
+    float* const last = z_.begin() + begin_[cell + 1];
+    float* const middle = first + (last - first) / 2;
+    if (first != last) std::nth_element(first, middle, last);
+    median_[cell] = first == last ? kUnknown : *middle;
+  }
+}
+
+float GroundSurface::blurred(std::size_t cell) const {
+  float weight = 0, height = 0;
+  for (std::size_t v = 0; v < 3; ++v) {
+    for (std::size_t u = 0; u < 3; ++u) {
+      const std::size_t other = cell + v * columns_ + u - columns_ - 1;
+      const float z = median_[other];
+      if (ground_[other] == 0) continue;
+      const float w = (u == 1 ? 2.0F : 1.0F) * (v == 1 ? 2.0F : 1.0F);
+      weight += w;
+      height += w * z;
+    }
+  }
+  return weight > 0 ? height / weight : kUnknown;
+}
+
+void GroundSurface::find_smooth_cells(float max_slope) {
+  ground_.assign(columns_ * rows_, 0);
+  const float limit = 2 * cell_ * max_slope;
+  for (std::size_t row = 1; row + 1 < rows_; ++row) {
+    for (std::size_t column = 1; column + 1 < columns_; ++column) {
+      const std::size_t cell = row * columns_ + column;
+      if (std::isnan(median_[cell])) continue;
+      const float rise_x = rise(cell, 1, columns_), rise_y = rise(cell, columns_, 1);
+      // False where a neighbour is not known.
+      ground_[cell] = rise_x * rise_x + rise_y * rise_y <= limit * limit ? 1 : 0;
+    }
+  }
+}
+
+float GroundSurface::rise(std::size_t cell, std::size_t along, std::size_t across) const {
+  float weight = 0, rise = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t middle = cell + k * across - across;
+    const float step = median_[middle + along] - median_[middle - along];
+    if (std::isnan(step)) continue;
+    const float w = k == 1 ? 2.0F : 1.0F;
+    weight += w;
+    rise += w * step;
+  }
+  return weight > 0 ? rise / weight : kUnknown;
+}
+
+void GroundSurface::find_patches(float max_slope) {
+  // The heights of single cells are noisier than the rise over three of them.
+  const float straight = 1.5F * max_slope * cell_, diagonal = 1.4142F * straight;
+  patch_.assign(columns_ * rows_, kNoLabel);
+  patches_.clear();
+  for (std::uint32_t seed = 0; seed < patch_.size(); ++seed) {
+    if (ground_[seed] == 0 || patch_[seed] != kNoLabel) continue;
+    const auto number = static_cast<std::uint32_t>(patches_.size());
+    queue_.clear();
+    queue_.push_back(seed);
+    patch_[seed] = number;
+    for (std::size_t next = 0; next < queue_.size(); ++next) {
+      for (std::size_t v = 0; v < 3; ++v) {
+        for (std::size_t u = 0; u < 3; ++u) {
+          const std::size_t cell = queue_[next] + v * columns_ + u - columns_ - 1;
+          if (ground_[cell] == 0 || patch_[cell] != kNoLabel) continue;
+          const float way = u != 1 && v != 1 ? diagonal : straight;
+          if (std::abs(median_[cell] - median_[queue_[next]]) > way) continue;
+          patch_[cell] = number;
+          queue_.push_back(static_cast<std::uint32_t>(cell));
+        }
+      }
+    }
+    patches_.push_back({static_cast<std::uint32_t>(queue_.size())});
+  }
+}
+
+void GroundSurface::join_patches(float tolerance) {
+  constexpr int kRounds = 3;
+  const std::size_t cells = columns_ * rows_;
+  smooth_.resize(cells);
+  if (!patches_.empty()) {
+    std::ranges::max_element(patches_, {}, &Patch::cells)->is_ground = true;
+  }
+  for (int round = 0;; ++round) {
+    for (std::size_t cell = 0; cell < cells; ++cell) {
+      ground_[cell] = patch_[cell] != kNoLabel && patches_[patch_[cell]].is_ground ? 1 : 0;
+    }
+    for (std::size_t cell = 0; cell < cells; ++cell) {
+      if (ground_[cell] != 0) smooth_[cell] = blurred(cell);
+    }
+    fill_.fill(columns_, rows_, ground_.data(), smooth_.data());
+    if (round == kRounds) return;
+    for (Patch& patch : patches_) patch.residual = 0;
+    for (std::size_t cell = 0; cell < cells; ++cell) {
+      if (patch_[cell] == kNoLabel) continue;
+      patches_[patch_[cell]].residual += median_[cell] - smooth_[cell];
+    }
+    bool joined = false;
+    for (Patch& patch : patches_) {
+      if (patch.is_ground) continue;
+      patch.is_ground = std::abs(patch.residual) <= tolerance * static_cast<float>(patch.cells);
+      joined |= patch.is_ground;
+    }
+    if (!joined) return;
+  }
+}
+
+bool GroundSurface::shows_ground(std::size_t cell, float tolerance) const {
+  return std::any_of(z_.begin() + begin_[cell], z_.begin() + begin_[cell + 1],
+                     [&](float z) { return std::abs(z - smooth_[cell]) <= tolerance; });
+}
+
+float GroundSurface::height(float x, float y) const {
+  const auto split = [](float value, std::size_t count, float& share) {
+    const float inside = std::clamp(value - 0.5F, 0.0F, static_cast<float>(count) - 1.001F);
+    const auto index = static_cast<std::size_t>(inside);
+    share = inside - static_cast<float>(index);
+    return index;
+  };
+  float u = 0, v = 0;
+  const std::size_t column = split((x - low_x_) * inverse_, columns_, u);
+  const std::size_t row = split((y - low_y_) * inverse_, rows_, v);
+  const float* const at = smooth_.data() + row * columns_ + column;
+  const float near = at[0] + u * (at[1] - at[0]);
+  const float far = at[columns_] + u * (at[columns_ + 1] - at[columns_]);
+  return near + v * (far - near);
+}
+
+}  // namespace scree

@@ -1,0 +1,64 @@
+#include "scree/detect/surroundings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace scree {
+
+void Surroundings::build(const EdgePoints& edges, const GroundSurface& surface) {
+  sides_.assign(surface.columns() * surface.rows(), 0);
+  visited_.assign(surface.columns() * surface.rows(), 0);
+  number_ = 0;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    sides_[surface.cell_at(edges.points.x[i], edges.points.y[i])] |=
+        edges.height[i] > 0 ? above : below;
+  }
+}
+
+bool Surroundings::borders_on(std::size_t cell, std::uint8_t side, std::size_t columns) const {
+  constexpr std::size_t kReach = 2;
+  const std::size_t column = cell % columns, row = cell / columns, rows = sides_.size() / columns;
+  for (std::size_t v = row - std::min(row, kReach); v <= std::min(row + kReach, rows - 1); ++v) {
+    for (std::size_t u = column - std::min(column, kReach);
+         u <= std::min(column + kReach, columns - 1); ++u) {
+      if ((sides_[v * columns + u] & side) != 0) return true;
+    }
+  }
+  return false;
+}
+
+void Surroundings::measure(Cluster& cluster, std::span<const std::uint32_t> members,
+                           const EdgePoints& edges, const GroundSurface& surface) {
+  constexpr float kGroundTolerance = 0.05F;
+  ++number_;
+  double slopes = 0;
+  float cells = 0, rim = 0, through = 0;
+  for (const std::uint32_t i : members) {
+    slopes += std::hypot(edges.slope_x[i], edges.slope_y[i]);
+    const std::size_t cell = surface.cell_at(edges.points.x[i], edges.points.y[i]);
+    if (std::exchange(visited_[cell], number_) == number_) continue;
+    ++cells;
+    if (borders_on(cell, edges.height[i] > 0 ? below : above, surface.columns())) ++rim;
+    if (surface.shows_ground(cell, kGroundTolerance)) ++through;
+  }
+  float inside = 0, unseen = 0;
+  const OrientedBox& box = cluster.box;
+  const float reach = std::hypot(box.length, box.width) / 2, step = surface.cell_size();
+  for (float y = box.center_y - reach; y <= box.center_y + reach; y += step) {
+    for (float x = box.center_x - reach; x <= box.center_x + reach; x += step) {
+      if (box.distance(x, y) > 0) continue;
+      ++inside;
+      if (surface.points_in(surface.cell_at(x, y)) == 0) ++unseen;
+    }
+  }
+  Features& features = cluster.features;
+  features[box_length] = box.length;
+  features[box_width] = box.width;
+  features[steepness] = static_cast<float>(slopes / static_cast<double>(members.size()));
+  features[rim_share] = rim / cells;
+  features[unseen_share] = unseen / std::max(inside, 1.0F);
+  features[through_share] = through / cells;
+}
+
+}  // namespace scree

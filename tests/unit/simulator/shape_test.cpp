@@ -1,0 +1,114 @@
+#include "simulator/shape.hpp"
+
+#include <gtest/gtest.h>
+
+#include <ostream>
+
+namespace scree {
+
+void PrintTo(ShapeKind kind, std::ostream* out) {
+  *out << name_of(kind);
+}
+
+namespace {
+
+struct Measured {
+  double highest = 0, lowest = 0;
+  double length = 0, width = 0;  ///< of the footprint's box along its longest way
+};
+
+Measured measure(const Shape& shape) {
+  Measured measured;
+  const double step = std::max(shape.reach() / 60, 0.01);
+  for (double x = -shape.reach(); x <= shape.reach(); x += step) {
+    for (double y = -shape.reach(); y <= shape.reach(); y += step) {
+      const double height = shape.height({x, y});
+      measured.highest = std::max(measured.highest, height);
+      measured.lowest = std::min(measured.lowest, height);
+    }
+  }
+  const Footprint footprint = shape.footprint();
+  Eigen::Vector2d along(1, 0);
+  for (const Eigen::Vector2d& a : footprint) {
+    for (const Eigen::Vector2d& b : footprint) {
+      if ((a - b).norm() <= measured.length) continue;
+      measured.length = (a - b).norm();
+      along = (a - b).normalized();
+    }
+  }
+  const Eigen::Vector2d across(-along.y(), along.x());
+  double least = 1e9;
+  double most = -1e9;
+  for (const Eigen::Vector2d& corner : footprint) {
+    least = std::min(least, corner.dot(across));
+    most = std::max(most, corner.dot(across));
+  }
+  measured.width = most - least;
+  return measured;
+}
+
+class EveryShape : public testing::TestWithParam<ShapeKind> {};
+
+TEST_P(EveryShape, HasTheSizeItsKindSays) {
+  const ShapeKind kind = GetParam();
+  Random random(1, static_cast<std::uint64_t>(kind));
+  for (int i = 0; i < 20; ++i) {
+    const Shape shape = Shape::draw(kind, random);
+    const Measured measured = measure(shape);
+    if (is_positive(kind)) {
+      EXPECT_GT(measured.highest, 0.14);
+      EXPECT_LT(measured.highest, is_long(kind) ? 0.51 : 1.21);
+      EXPECT_EQ(measured.lowest, 0);
+    } else if (is_negative(kind)) {
+      EXPECT_LT(measured.lowest, -0.19);
+      EXPECT_GT(measured.lowest, -1.01);
+      EXPECT_LT(measured.highest, kind == ShapeKind::crater ? 0.31 : 1e-9);
+    }
+    if (is_long(kind)) {
+      EXPECT_GT(measured.length, 0.99);
+      EXPECT_LT(measured.length, 6.6);
+    }
+    if (kind == ShapeKind::pothole) {
+      EXPECT_GT(measured.length, 0.28);
+      EXPECT_LT(measured.length, 1.3);
+    }
+  }
+}
+
+TEST_P(EveryShape, IsFlatBeyondItsReachAndOutlinedByItsFootprint) {
+  const ShapeKind kind = GetParam();
+  Random random(2, static_cast<std::uint64_t>(kind));
+  for (int i = 0; i < 5; ++i) {
+    const Shape shape = Shape::draw(kind, random);
+    const Footprint footprint = shape.footprint();
+    int differ = 0;
+    int inside = 0;
+    const double step = shape.reach() / 60;
+    for (double x = -1.5 * shape.reach(); x <= 1.5 * shape.reach(); x += step) {
+      for (double y = -1.5 * shape.reach(); y <= 1.5 * shape.reach(); y += step) {
+        const Eigen::Vector2d at(x, y);
+        if (at.norm() > shape.reach() + 1e-9) {
+          EXPECT_EQ(shape.height(at), 0);
+        }
+        if (distance(footprint, at) > shape.margin() + 0.02) {
+          EXPECT_NEAR(shape.height(at), 0, 0.02);
+        }
+        inside += shape.inside(at) ? 1 : 0;
+        differ += shape.inside(at) != contains(footprint, at) ? 1 : 0;
+      }
+    }
+    EXPECT_LT(differ, inside / 10 + 5);
+  }
+}
+
+std::vector<ShapeKind> all_kinds() {
+  std::vector<ShapeKind> kinds;
+  for (std::size_t i = 0; i < kShapeKinds; ++i) kinds.push_back(static_cast<ShapeKind>(i));
+  return kinds;
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, EveryShape, testing::ValuesIn(all_kinds()),
+                         [](const auto& which) { return std::string(name_of(which.param)); });
+
+}  // namespace
+}  // namespace scree

@@ -1,0 +1,172 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "scree/core/pose.hpp"
+#include "simulator/shape.hpp"
+
+namespace scree {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+/// How much of a long shape's half length one end takes at most.
+constexpr double kLongestEnd = 0.6;
+
+}  // namespace
+
+Shape Shape::draw(ShapeKind kind, Random& random, std::optional<SizeRange> size) {
+  Shape shape;
+  shape.kind_ = kind;
+  const double yaw = random.uniform(-kPi, kPi);
+  shape.cos_yaw_ = std::cos(yaw);
+  shape.sin_yaw_ = std::sin(yaw);
+  shape.draw_size(random, size);
+  if (is_positive(kind)) {
+    shape.draw_rock(random);
+  } else if (is_negative(kind)) {
+    shape.draw_hole(random);
+  } else {
+    const double width = random.uniform(0.8, 2.5);
+    shape.semi_axes_ = {width * random.uniform(1.0, 1.6), width};
+    shape.irregularity_ = 0.1;
+  }
+  shape.draw_outline(random);
+  const double length = shape.semi_axes_.x();
+  const double largest = *std::max_element(shape.outline_.begin(), shape.outline_.end());
+  const double beyond = kind == ShapeKind::crater ? 1.5 : 1.0;
+  shape.reach_ =
+      is_long(kind)
+          ? std::hypot(length, shape.semi_axes_.y() + std::abs(shape.bend_) * length * length)
+          : length * largest * beyond;
+  if (!is_positive(kind) && !is_negative(kind)) {
+    shape.size_ = 1;
+    shape.size_ = std::tan(radians(random.uniform(8, 19))) / shape.steepest_slope();
+  }
+  return shape;
+}
+
+void Shape::draw_size(Random& random, std::optional<SizeRange> size) {
+  if (size) {
+    size_ = random.uniform(size->low, size->high);
+  } else if (is_positive(kind_) && is_long(kind_)) {
+    size_ = random.uniform(0.15, 0.5);
+  } else if (is_positive(kind_)) {
+    const double drawn = random.uniform();
+    size_ = 0.15 + 1.05 * drawn * std::sqrt(drawn);  // more small rocks than large ones
+  } else {
+    size_ = random.uniform(0.2, 1.0);
+  }
+}
+
+void Shape::draw_rock(Random& random) {
+  const double narrowest = std::min(0.15, size_);
+  double width = std::max(narrowest, size_ * random.uniform(0.45, 1.1));
+  double length =
+      width * (random.chance(0.25) ? random.uniform(1.6, 3.0) : random.uniform(1.0, 1.5));
+  switch (kind_) {
+    case ShapeKind::block:
+      sharpness_ = random.uniform(0.12, 0.35);
+      detail_ = random.uniform(0, 0.35);
+      break;
+    case ShapeKind::peak:
+      sharpness_ = random.uniform(0.7, 1.1);
+      break;
+    case ShapeKind::bump:
+      width = size_ * random.uniform(1.0, 1.7);
+      length = width * random.uniform(1.0, 1.4);
+      break;
+    case ShapeKind::log:
+      width = size_ * random.uniform(0.5, 1.1);
+      length = random.uniform(0.5, 1.5);
+      bend_ = random.uniform(-0.05, 0.05);
+      break;
+    case ShapeKind::ledge:
+      detail_ = random.chance(0.5) ? 1 : 0;
+      // A ramp is at least as wide as makes it climb on.
+      width = detail_ > 0 ? size_ * random.uniform(1.2, 2.0) : random.uniform(0.12, 0.5);
+      length = random.uniform(0.5, 1.5);
+      sharpness_ = random.uniform(0.1, 0.3);
+      bend_ = random.uniform(-0.1, 0.1);
+      end_ = random.uniform(0.04, 0.3);
+      break;
+    default:
+      sharpness_ = random.uniform(0.35, 0.6);
+  }
+  semi_axes_ = {length, width};
+}
+
+void Shape::draw_hole(Random& random) {
+  double width = 0;
+  double longer = 0;
+  switch (kind_) {
+    case ShapeKind::pit:
+      sharpness_ = random.uniform(0.1, 0.4);
+      width = std::max(0.3, size_ * random.uniform(0.6, 1.4));
+      longer = random.uniform(1.0, 1.8);
+      break;
+    case ShapeKind::pothole:
+      sharpness_ = random.uniform(2.5, 6.0);
+      width = std::max(random.uniform(0.15, 0.45), 0.4 * size_);
+      longer = random.uniform(1.0, 1.3);
+      break;
+    case ShapeKind::crater:
+      width = std::max(0.4, size_ * random.uniform(1.2, 2.0));
+      longer = random.uniform(1.0, 1.25);
+      detail_ = random.chance(0.5) ? size_ * random.uniform(0.08, 0.3) : 0;
+      irregularity_ = 0.1;
+      break;
+    case ShapeKind::ditch:
+      width = random.uniform(0.15, 0.6);
+      longer = random.uniform(0.75, 3.0) / width;
+      sharpness_ = random.uniform(0.3, 0.8);
+      bend_ = random.chance(0.4) ? 0 : random.uniform(-0.08, 0.08);
+      end_ =
+          std::min(width * (random.chance(0.5) ? random.uniform(0.3, 0.6) : random.uniform(1, 2)),
+                   kLongestEnd * longer * width);
+      break;
+    default:
+      width = std::max(0.3, size_ * random.uniform(0.8, 1.6));
+      longer = random.uniform(1.0, 1.5);
+  }
+  semi_axes_ = {width * longer, width};
+}
+
+void Shape::draw_outline(Random& random) {
+  struct Wave {
+    double amplitude, phase;
+  };
+  std::array<Wave, 4> waves{};
+  double total = 0;
+  for (Wave& wave : waves) {
+    wave = {random.uniform(), random.uniform(0, 2 * kPi)};
+    total += wave.amplitude;
+  }
+  for (std::size_t i = 0; i < kDirections; ++i) {
+    const double angle = 2 * kPi * static_cast<double>(i) / kDirections;
+    outline_[i] = 1;
+    for (std::size_t k = 0; k < waves.size(); ++k) {
+      const double turns = static_cast<double>(k + 2);
+      outline_[i] +=
+          irregularity_ * waves[k].amplitude / total * std::cos(turns * angle + waves[k].phase);
+    }
+  }
+}
+
+double Shape::steepest_slope() const {
+  constexpr int kSteps = 100;
+  const double step = reach_ / kSteps;
+  double steepest = 0;
+  for (int i = -kSteps; i <= kSteps; ++i) {
+    for (int j = -kSteps; j <= kSteps; ++j) {
+      const Eigen::Vector2d point(i * step, j * step);
+      const double here = height(point);
+      const double dx = height(point + Eigen::Vector2d(step, 0)) - here;
+      const double dy = height(point + Eigen::Vector2d(0, step)) - here;
+      steepest = std::max(steepest, std::hypot(dx, dy) / step);
+    }
+  }
+  return steepest;
+}
+
+}  // namespace scree

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "simulator/shape.hpp"
+
+namespace scree {
+
+/// How often each kind of shape is drawn among its like (rocks, holes, smooth ones).
+using ShapeWeights = std::array<double, kShapeKinds>;
+inline constexpr ShapeWeights kAllShapes = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
+
+/// How a terrain is drawn. Lengths in metres.
+struct TerrainSettings {
+  double size = 40;               ///< edge of the square, centred on the origin
+  double cell = 0.02;             ///< distance of the raster's heights
+  double gentlest_slope_deg = 4;  ///< the rolling ground's steepest slope is drawn between these
+  double steepest_slope_deg = 15;
+  double roughness = 0.012;  ///< most height of stones and grass roots too small to matter
+  double unevenness = 0;     ///< standard deviation of waves 0.3 to 2 m long
+  double tuft_cover = 0;     ///< share of the ground under tufts of grass
+  int positive = 11;         ///< rocks
+  int negative = 7;          ///< holes
+  int smooth = 8;            ///< mounds and hollows that are no obstacles
+  int small = 0;             ///< stones and dents that are neither asked for nor wrong
+  int pairs = 1;             ///< of the rocks: two 0.3-0.6 m apart
+  int neighbours = 0;        ///< of rocks and holes: a pothole 0.3-0.6 m beside a rock
+  int nests = 0;             ///< of rocks, holes and smooth ones: one inside a hollow or on a mound
+  ShapeWeights weights = kAllShapes;
+  double placed_within = 18;  ///< features lie in the square from -this to this, or, where there is
+                              ///< a corridor, this close to it
+  double gap = 0.6;           ///< least distance of two features' rims
+  double clear_radius = 0;    ///< no feature this close to the origin, where the robot stands
+  double level_radius = 0;    ///< the ground is level this far around the origin
+  std::vector<Eigen::Vector2d> corridor;  ///< points along a robot's way, at most 0.5 m apart
+  double corridor_half_width = 1;         ///< no rock and no hole this close to the way
+};
+
+}  // namespace scree
