@@ -179,7 +179,7 @@ void Detector::find_clusters() {
 
 void Detector::measure_clusters() {
   EdgePoints& edges = settings_.suppression ? kept_ : edges_;
-  if (settings_.uses_surface()) surroundings_.build(edges, surface_);
+  if (settings_.uses_surface()) surroundings_.build(cells_.points(), height_, edges, surface_);
   for (Cluster& cluster : clusters_.all()) {
     const auto members = clusters_.members(cluster);
     if (settings_.ground == GroundReference::ring) {

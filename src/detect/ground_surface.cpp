@@ -183,11 +183,6 @@ void GroundSurface::join_patches(float tolerance) {
   }
 }
 
-bool GroundSurface::shows_ground(std::size_t cell, float tolerance) const {
-  return std::any_of(z_.begin() + begin_[cell], z_.begin() + begin_[cell + 1],
-                     [&](float z) { return std::abs(z - smooth_[cell]) <= tolerance; });
-}
-
 float GroundSurface::height(float x, float y) const {
   const auto split = [](float value, std::size_t count, float& share) {
     const float inside = std::clamp(value - 0.5F, 0.0F, static_cast<float>(count) - 1.001F);

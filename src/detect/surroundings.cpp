@@ -6,7 +6,14 @@
 
 namespace scree {
 
-void Surroundings::build(const EdgePoints& edges, const GroundSurface& surface) {
+void Surroundings::build(PointView cloud, std::span<const float> heights, const EdgePoints& edges,
+                         const GroundSurface& surface) {
+  constexpr float kGroundTolerance = 0.05F;
+  ground_seen_.assign(4 * surface.columns() * surface.rows(), 0);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (std::abs(heights[i]) > kGroundTolerance) continue;
+    ground_seen_[quarter_at(cloud.x[i], cloud.y[i], surface)] = 1;
+  }
   sides_.assign(surface.columns() * surface.rows(), 0);
   visited_.assign(surface.columns() * surface.rows(), 0);
   number_ = 0;
@@ -14,6 +21,23 @@ void Surroundings::build(const EdgePoints& edges, const GroundSurface& surface) 
     sides_[surface.cell_at(edges.points.x[i], edges.points.y[i])] |=
         edges.height[i] > 0 ? above : below;
   }
+}
+
+std::size_t Surroundings::quarter_at(float x, float y, const GroundSurface& surface) const {
+  const float u = surface.column_of(x), v = surface.row_of(y);
+  return static_cast<std::size_t>(2 * v) * 2 * surface.columns() + static_cast<std::size_t>(2 * u);
+}
+
+/// Whether the ground was seen in each of the four squares, two quarters wide, that lie diagonally
+/// around the place. Beside a wall it is seen on one side only.
+bool Surroundings::is_amid_ground(float x, float y, const GroundSurface& surface) const {
+  const auto row = 2 * static_cast<std::ptrdiff_t>(surface.columns());
+  const std::uint8_t* const middle = ground_seen_.begin() + quarter_at(x, y, surface);
+  const auto seen = [&](std::ptrdiff_t right, std::ptrdiff_t up) {
+    const std::uint8_t* const near = middle + right + up * row;
+    return (near[0] | near[right] | near[up * row] | near[right + up * row]) != 0;
+  };
+  return seen(1, 1) && seen(1, -1) && seen(-1, 1) && seen(-1, -1);
 }
 
 bool Surroundings::borders_on(std::size_t cell, std::uint8_t side, std::size_t columns) const {
@@ -30,17 +54,16 @@ bool Surroundings::borders_on(std::size_t cell, std::uint8_t side, std::size_t c
 
 void Surroundings::measure(Cluster& cluster, std::span<const std::uint32_t> members,
                            const EdgePoints& edges, const GroundSurface& surface) {
-  constexpr float kGroundTolerance = 0.05F;
   ++number_;
   double slopes = 0;
   float cells = 0, rim = 0, through = 0;
   for (const std::uint32_t i : members) {
     slopes += std::hypot(edges.slope_x[i], edges.slope_y[i]);
+    if (is_amid_ground(edges.points.x[i], edges.points.y[i], surface)) ++through;
     const std::size_t cell = surface.cell_at(edges.points.x[i], edges.points.y[i]);
     if (std::exchange(visited_[cell], number_) == number_) continue;
     ++cells;
     if (borders_on(cell, edges.height[i] > 0 ? below : above, surface.columns())) ++rim;
-    if (surface.shows_ground(cell, kGroundTolerance)) ++through;
   }
   float inside = 0, unseen = 0;
   const OrientedBox& box = cluster.box;
@@ -58,7 +81,7 @@ void Surroundings::measure(Cluster& cluster, std::span<const std::uint32_t> memb
   features[steepness] = static_cast<float>(slopes / static_cast<double>(members.size()));
   features[rim_share] = rim / cells;
   features[unseen_share] = unseen / std::max(inside, 1.0F);
-  features[through_share] = through / cells;
+  features[through_share] = through / static_cast<float>(members.size());
 }
 
 }  // namespace scree

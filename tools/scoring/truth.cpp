@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <sstream>
 
 #include "scoring/json_field.hpp"
 
@@ -134,11 +134,10 @@ Pose Truth::pose_at(std::int64_t t_ns) const {
 
 Result<Truth> read_truth(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  if (stream) text << stream.rdbuf();
-  if (!stream || !text) return fail("cannot read " + file.string());
+  if (!stream || std::filesystem::is_directory(file)) return fail("cannot read " + file.string());
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
   try {
-    const auto json = parse_json(text.str());
+    const auto json = parse_json(text);
     return truth_of(JsonField(json));
   } catch (const JsonFault& fault) {
     return fail(fmt::format("{}: no truth: {}", file.string(), fault.what()));

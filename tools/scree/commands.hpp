@@ -21,6 +21,7 @@ void add_detect(CLI::App& app);
 void add_simulate(CLI::App& app);
 void add_train(CLI::App& app);
 void add_evaluate(CLI::App& app);
+void add_study(CLI::App& app);
 void add_picture(CLI::App& app);
 void add_replay(CLI::App& app);
 void add_watch(CLI::App& app);

@@ -14,6 +14,7 @@ void add_all(CLI::App& app) {
   scree::cli::add_simulate(app);
   scree::cli::add_train(app);
   scree::cli::add_evaluate(app);
+  scree::cli::add_study(app);
   scree::cli::add_picture(app);
   scree::cli::add_replay(app);
   scree::cli::add_watch(app);

@@ -86,10 +86,10 @@ std::string provenance(const Options& options, const DetectSettings& detect,
   const std::string profile = name_in(kProfiles, options.profile);
   std::string text = fmt::format(
       "Network for {}s, trained by Levenberg-Marquardt on clusters of simulated terrain.\n"
-      "scree train --profile {} --seed {} --training {} --validation {} --held-out {} --hidden {} "
+      "scree train --profile {} --seed {} --training {} --validation {} --held-out {} --hidden {} --inputs {} "
       "--restarts {} --counts {}\n\n",
       profile, profile, options.seed, options.training, options.validation, options.held_out,
-      options.learn.hidden, options.learn.restarts, name_in(kForms, options.counts));
+      options.learn.hidden, options.learn.inputs, options.learn.restarts, name_in(kForms, options.counts));
   for (const Part& part : parts) text += describe(part);
   text += fmt::format("{} steps, best {}: {}; mean squared error {:.6f}, validation {:.6f}\n\n",
                       result.curve.size() - 1, result.best, name_of(result.stop),
@@ -166,6 +166,12 @@ void add_train(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--hidden", options->learn.hidden, "units of the hidden layer")
       ->check(CLI::Range(std::size_t{1}, Network::kMaxHidden))
+      ->capture_default_str();
+  command
+      ->add_option("--inputs", options->learn.inputs,
+                   fmt::format("how many of the features; the paper's are the first {}",
+                               kPaperFeatures))
+      ->check(CLI::Range(std::size_t{1}, std::size_t{kFeatures}))
       ->capture_default_str();
   command->add_option("--restarts", options->learn.restarts, "starts from other weights")
       ->check(CLI::Range(1, 1000))

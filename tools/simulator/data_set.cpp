@@ -8,22 +8,37 @@
 #include "simulator/visibility.hpp"
 
 namespace scree {
-namespace {
 
-void append(LabelledClusters& all, const LabelledClusters& part) {
-  all.samples.insert(all.samples.end(), part.samples.begin(), part.samples.end());
-  all.obstacles += part.obstacles;
-  all.found += part.found;
-}
-
-/// More features than a walk would meet, so that fewer terrains are needed.
-TerrainSettings crowded() {
+TerrainSettings varied_terrain(std::uint64_t seed) {
+  const std::uint64_t turn = seed % (kScenes.size() + 1);
+  if (turn < kScenes.size()) return cloud_terrain(kScenes[turn], seed);
   TerrainSettings settings;
   settings.positive = 18;
   settings.negative = 14;
   settings.smooth = 24;
   settings.placed_within = 19;
   return settings;
+}
+
+CloudSettings varied_cloud(std::uint64_t seed) {
+  constexpr std::uint64_t kStream = 0x7EA1;
+  Random random(seed, kStream);
+  CloudSettings cloud;
+  cloud.points = 600'000 + random.index(400'001);
+  cloud.noise = random.uniform(0.004, 0.018);
+  cloud.scattered_share = random.uniform(0, 0.001);
+  cloud.density_spread = random.uniform(1, 4);
+  cloud.wall_density = random.uniform(0.2, 1);
+  cloud.ghosting = random.uniform(0, 0.015);
+  return cloud;
+}
+
+namespace {
+
+void append(LabelledClusters& all, const LabelledClusters& part) {
+  all.samples.insert(all.samples.end(), part.samples.begin(), part.samples.end());
+  all.obstacles += part.obstacles;
+  all.found += part.found;
 }
 
 class FromClouds {
@@ -33,10 +48,8 @@ public:
         unused_(static_cast<std::size_t>(settings.detect_cloud.max_obstacles)) {}
 
   LabelledClusters operator()(std::uint64_t seed) {
-    const Terrain terrain(crowded(), seed);
-    CloudSettings cloud;
-    cloud.points = 600'000 + Random(seed).index(400'001);
-    detector_.detect(reconstructed_cloud(terrain, cloud, seed), unused_);
+    const Terrain terrain(varied_terrain(seed), seed);
+    detector_.detect(reconstructed_cloud(terrain, varied_cloud(seed), seed), unused_);
     return label_clusters(detector_, terrain.features(), obstacle_ids(terrain));
   }
 

@@ -18,8 +18,15 @@ struct SeedRange {
   std::size_t count = 0;
 };
 
-/// Clusters that the detector finds in terrains of these seeds, with their truth. Clouds have
-/// 600,000 to 1,000,000 points; sweeps are one turn at 5, 10 or 20 Hz of the lidar that `settings`
+/// The scenes in turn, and after them a terrain of the default kind with more features than a walk
+/// would meet.
+TerrainSettings varied_terrain(std::uint64_t seed);
+/// 600,000 to 1,000,000 points; noise, density, ghosting and scattered points differ from seed to
+/// seed.
+CloudSettings varied_cloud(std::uint64_t seed);
+
+/// Clusters that the detector finds in terrains of these seeds, with their truth. Clouds are
+/// varied_cloud()s of varied_terrain()s; sweeps are one turn at 5, 10 or 20 Hz of the lidar that `settings`
 /// describes, and only obstacles that it shows well enough (see Visibility) are asked for.
 /// @param progress called after each seed with the number done
 LabelledClusters make_data_set(Profile profile, const Settings& settings, SeedRange seeds,

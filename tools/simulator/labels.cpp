@@ -8,8 +8,9 @@ namespace {
 
 constexpr double kGrowth = 0.15;
 
+/// Mounds and hollows cover nothing: an obstacle may lie on one.
 bool covers(const TerrainFeature& feature, const Eigen::Vector2d& point) {
-  return distance(feature.footprint, point) <= kGrowth;
+  return feature.kind && distance(feature.footprint, point) <= kGrowth;
 }
 
 /// The feature that a cluster belongs to, null for none.
@@ -31,9 +32,13 @@ const TerrainFeature* feature_of(const Cluster& cluster, const Detector& detecto
   return nullptr;
 }
 
-Label label_of(const TerrainFeature* feature) {
-  if (feature == nullptr || !feature->kind) return Label::none;
-  return feature->kind == ObstacleKind::positive ? Label::positive : Label::negative;
+/// The rim of a hole is no hole, and a hollow beside a rock no rock.
+Label label_of(const TerrainFeature* feature, const Features& features) {
+  if (feature == nullptr) return Label::none;
+  if (feature->kind == ObstacleKind::positive) {
+    return features[max_height] > 0 ? Label::positive : Label::none;
+  }
+  return features[min_height] < 0 ? Label::negative : Label::none;
 }
 
 }  // namespace
@@ -46,7 +51,8 @@ LabelledClusters label_clusters(const Detector& detector, std::span<const Terrai
   for (const Cluster& cluster : detector.clusters().all()) {
     if (!std::ranges::all_of(cluster.features, [](float f) { return std::isfinite(f); })) continue;
     const TerrainFeature* feature = feature_of(cluster, detector, features);
-    labelled.samples.push_back({cluster.features, label_of(feature)});
+    if (feature != nullptr && feature->is_small) continue;
+    labelled.samples.push_back({cluster.features, label_of(feature, cluster.features)});
     if (feature != nullptr) has_cluster[static_cast<std::size_t>(feature->id)] = true;
   }
   for (const int id : asked) labelled.found += has_cluster[static_cast<std::size_t>(id)] ? 1U : 0U;

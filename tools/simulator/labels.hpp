@@ -19,7 +19,8 @@ struct LabelledClusters {
 
 /// Names the truth of each cluster of the detector's last cloud, which must lie in the frame of
 /// the features: the feature whose footprint, grown by 0.15 m, covers the middle of the cluster's
-/// box or at least half of its points. Clusters whose features are not finite are left out.
+/// box or at least half of its points. Left out are clusters whose features are not finite, and
+/// those of stones and dents too small to be asked for.
 /// @param asked ids of the features that count as obstacles asked for; other features still give
 /// their clusters a label
 LabelledClusters label_clusters(const Detector& detector, std::span<const TerrainFeature> features,

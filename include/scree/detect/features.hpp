@@ -19,7 +19,7 @@ enum Feature : std::size_t {
   steepness,      ///< mean slope of its points, metres per metre
   rim_share,      ///< of its cells: next to something on the other side of the ground
   unseen_share,   ///< of the cells of its box: without a point
-  through_share,  ///< of its cells: with points on the ground as well; tufts let light through
+  through_share,  ///< of its points: with ground seen on all sides of it; tufts let light through
   kFeatures
 };
 inline constexpr std::size_t kPaperFeatures = 5;

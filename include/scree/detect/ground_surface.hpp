@@ -38,9 +38,10 @@ public:
   std::size_t rows() const { return rows_; }
   float cell_size() const { return cell_; }
   std::size_t cell_at(float x, float y) const;
+  /// Place on the raster in cells, from its edge; at least 2 cells lie beyond every point.
+  float column_of(float x) const { return (x - low_x_) * inverse_; }
+  float row_of(float y) const { return (y - low_y_) * inverse_; }
   /// Points in a cell; 0: not seen.
-  /// Whether one of its points lies within the tolerance of the surface.
-  bool shows_ground(std::size_t cell, float tolerance) const;
   std::uint32_t points_in(std::size_t cell) const { return begin_[cell + 1] - begin_[cell]; }
 
 private:

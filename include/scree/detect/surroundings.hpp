@@ -12,10 +12,14 @@ namespace scree {
 /// ground's surface.
 class Surroundings {
 public:
-  explicit Surroundings(std::size_t max_cells) : sides_(max_cells), visited_(max_cells) {}
+  explicit Surroundings(std::size_t max_cells)
+      : sides_(max_cells), visited_(max_cells), ground_seen_(4 * max_cells) {}
 
-  /// Notes in which cells something stands above the ground or lies below it.
-  void build(const EdgePoints& edges, const GroundSurface& surface);
+  /// Notes where the ground itself was seen, and in which cells something stands above it or lies
+  /// below it.
+  /// @param heights of the cloud's points above the surface
+  void build(PointView cloud, std::span<const float> heights, const EdgePoints& edges,
+             const GroundSurface& surface);
 
   /// Sets the features from box_length on.
   /// @param members of the cluster among the points given to build()
@@ -25,10 +29,13 @@ public:
 private:
   enum Side : std::uint8_t { above = 1, below = 2 };
 
+  std::size_t quarter_at(float x, float y, const GroundSurface& surface) const;
+  bool is_amid_ground(float x, float y, const GroundSurface& surface) const;
   bool borders_on(std::size_t cell, std::uint8_t side, std::size_t columns) const;
 
   FixedVector<std::uint8_t> sides_;
   FixedVector<std::uint32_t> visited_;  // number of the last cluster that counted the cell
+  FixedVector<std::uint8_t> ground_seen_;  // in each quarter of a cell, row by row
   std::uint32_t number_ = 0;
 };
 

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "drawing.hpp"
+#include "scoring/truth.hpp"
+#include "scree/config/settings.hpp"
+#include "scree/core/point_cloud.hpp"
+#include "scree/detect/detector.hpp"
+#include "simulator/data_set.hpp"
+#include "simulator/terrain.hpp"
+
+namespace scree::cli {
+
+/// What every study is told.
+struct StudyTask {
+  std::filesystem::path out;            ///< folder, there
+  std::filesystem::path config_folder;  ///< where relative names of weights are looked for
+  Settings settings;
+  SeedRange seeds;           ///< terrains that nothing was trained on
+  std::size_t training = 0;  ///< terrains to train on, where a study trains
+  std::size_t points = 0;    ///< of a cloud
+};
+
+/// The detector's settings under a name.
+struct Way {
+  std::string name;
+  DetectSettings detect;
+};
+
+/// The paper's way as printed, and ours as configured.
+std::vector<Way> both_ways(const StudyTask& task);
+
+/// A terrain with one reconstructed cloud of it, and what a list for it is scored against.
+struct CloudWorld {
+  CloudWorld(const TerrainSettings& settings, std::size_t points, std::uint64_t seed);
+
+  Terrain terrain;
+  PointCloud cloud;
+  Truth truth;
+};
+
+/// A detector for these settings with the weights that they name. Throws Failure.
+Detector detector_of(const DetectSettings& settings, const StudyTask& task);
+/// Its answer to a cloud.
+ObstacleList list_of(Detector& detector, PointView cloud, const DetectSettings& settings);
+
+/// Write into the task's folder and say so on stdout. Throw Failure.
+void write_table(const StudyTask& task, const std::string& name, const std::string& text);
+void write_picture(const StudyTask& task, const std::string& name, Drawing& drawing);
+
+// One file a study; each writes NAME.csv or NAME.txt and NAME.png.
+void study_training(const StudyTask& task);
+void study_clustering(const StudyTask& task);
+void study_seed_distance(const StudyTask& task);
+void study_stages(const StudyTask& task);
+void study_result(const StudyTask& task);
+void study_classifiers(const StudyTask& task);
+void study_detection(const StudyTask& task);
+
+}  // namespace scree::cli

@@ -1,0 +1,177 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+
+#include "chart.hpp"
+#include "commands.hpp"
+#include "progress.hpp"
+#include "score_text.hpp"
+#include "scoring/matching.hpp"
+#include "scree/app/pipeline.hpp"
+#include "simulator/lidar.hpp"
+#include "simulator/scene.hpp"
+#include "simulator/truth.hpp"
+#include "simulator/visibility.hpp"
+#include "study.hpp"
+
+namespace scree::cli {
+namespace {
+
+/// Pairs of obstacles 0.3-0.6 m apart, and how many came out as two of the right kinds.
+struct Pairs {
+  std::size_t all = 0, parted = 0;
+
+  void add(const CloudWorld& world, const Comparison& comparison) {
+    std::map<int, bool> is_right;
+    for (const auto& asked : comparison.asked) is_right[asked.obstacle->id] = asked.is_right;
+    for (const TerrainFeature& feature : world.terrain.features()) {
+      const auto one = is_right.find(feature.id);
+      const auto other = is_right.find(feature.partner);
+      // Each pair once; where only one names the other that one counts.
+      if (one == is_right.end() || other == is_right.end()) continue;
+      const auto& features = world.terrain.features();
+      const auto partner = std::ranges::find(features, feature.partner, &TerrainFeature::id);
+      if (partner->partner == feature.id && partner->id < feature.id) continue;
+      ++all;
+      parted += one->second && other->second ? 1U : 0U;
+    }
+  }
+};
+
+struct CloudScores {
+  Scorer scorer;
+  Pairs pairs;
+};
+
+std::vector<CloudScores> score_clouds(const std::vector<Way>& ways, const StudyTask& task) {
+  std::vector<Detector> detectors;
+  for (const Way& way : ways) detectors.push_back(detector_of(way.detect, task));
+  std::vector<CloudScores> scores(ways.size());
+  Progress progress("clouds", task.seeds.count);
+  for (std::size_t i = 0; i < task.seeds.count; ++i) {
+    const CloudWorld world(TerrainSettings(), task.points, task.seeds.first + i);
+    for (std::size_t w = 0; w < ways.size(); ++w) {
+      const ObstacleList list = list_of(detectors[w], world.cloud, ways[w].detect);
+      scores[w].scorer.add(world.truth, {&list, 1});
+      scores[w].pairs.add(world, compare(world.truth, world.truth.visible[0], list));
+    }
+    progress(i + 1);
+  }
+  return scores;
+}
+
+/// One turn of a lidar at rest, at 10 Hz.
+Scorer score_sweeps(const StudyTask& task) {
+  const Settings& settings = task.settings;
+  auto pipeline = Pipeline::make(settings, task.config_folder);
+  if (!pipeline) throw Failure(pipeline.error().message);
+  Sweep sweep(static_cast<std::size_t>(settings.detect_sweep.max_points));
+  Scorer scorer;
+  Progress progress("sweeps", task.seeds.count);
+  for (std::size_t i = 0; i < task.seeds.count; ++i) {
+    TerrainSettings ground = scene_terrain();
+    ground.size = 2 * (ground.placed_within + 6);
+    const Terrain terrain(ground, task.seeds.first + i);
+    const RayCaster caster(terrain);
+    SimulatedLidarSettings lidar_settings;
+    lidar_settings.model = settings.lidar.model;
+    SimulatedLidar lidar(terrain, caster, lidar_settings, settings.lidar.mount(), 0,
+                         task.seeds.first + i);
+    Visibility visibility(terrain);
+    sweep.clear();
+    for (lidar.advance(); lidar.turns(lidar.packet_end_ns()) <= 1; lidar.advance()) {
+      visibility.add(lidar.shots());
+      for (std::size_t shot = 0; shot < lidar.shots().size(); ++shot) {
+        if (lidar.shots()[shot].range <= 0) continue;
+        const Eigen::Vector3f point = lidar.point_of(shot).cast<float>();
+        sweep.points.push_back(point.x(), point.y(), point.z(), lidar.shots()[shot].reflectivity);
+      }
+    }
+    visibility.end_sweep();
+    const Truth truth{
+        true_obstacles(terrain), {{0, Pose()}}, {{0, visibility.seen(), visibility.not_seen()}}};
+    scorer.add(truth, {&pipeline->process(sweep), 1});
+    progress(i + 1);
+  }
+  return scorer;
+}
+
+std::string pairs_line(const Pairs& pairs) {
+  if (pairs.all == 0) return "\nno pairs in these clouds\n";
+  return fmt::format("\npairs 0.3-0.6 m apart that came out as two: {} of {} ({:.1f} %)\n",
+                     pairs.parted, pairs.all,
+                     100.0 * static_cast<double>(pairs.parted) / static_cast<double>(pairs.all));
+}
+
+Drawing cloud_chart(const std::vector<Way>& ways, const std::vector<CloudScores>& scores,
+                    const StudyTask& task) {
+  BarChart chart;
+  chart.title = "Detection and kind together on reconstructed clouds";
+  chart.subtitle =
+      fmt::format("{} simulated clouds of {} points, scored as CONTRACT.md says; goal: F1 0.98",
+                  task.seeds.count, task.points);
+  chart.y = {"share", 0, 1, false};
+  chart.groups = {"precision", "recall", "F1", "F1 rocks", "F1 holes", "pairs parted"};
+  for (std::size_t w = 0; w < ways.size(); ++w) {
+    const Scores& s = scores[w].scorer.result().scores;
+    const Pairs& pairs = scores[w].pairs;
+    const double parted = pairs.all == 0
+                              ? std::numeric_limits<double>::quiet_NaN()
+                              : static_cast<double>(pairs.parted) / static_cast<double>(pairs.all);
+    chart.series.push_back({ways[w].name,
+                            series_colour(w),
+                            {s.all().precision(), s.all().recall(), s.all().f1(), s.positive.f1(),
+                             s.negative.f1(), parted}});
+  }
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  chart.series.push_back({"the paper's result on its own 65 frames (fig. 21)",
+                          kPaperColour,
+                          {0.963, 0.988, 0.975, none, none, none}});
+  return draw_chart(chart);
+}
+
+Drawing sweep_chart(const ScoringResult& result, const StudyTask& task) {
+  LineChart chart;
+  chart.title = "Single sweeps, by distance";
+  chart.subtitle = fmt::format(
+      "{} simulated sweeps of a VLP-16 at rest, 10 Hz, obstacles within 10 m; all kinds: F1 {:.3f}",
+      task.seeds.count, result.scores.all().f1());
+  chart.x = {"distance of the obstacle (false positives: of the detection) [m]", 0, 12, false};
+  chart.y = {"share", 0, 1, false};
+  chart.lines = {{"precision", series_colour(0), {}, false, true},
+                 {"recall", series_colour(1), {}, false, true},
+                 {"F1", series_colour(2), {}, false, true}};
+  for (const auto& [band, scores] : result.by_range) {
+    const Score score = scores.all();
+    const double middle = (band + 0.5) * ScoringResult::kRangeBand;
+    if (middle > chart.x.high || score.true_positives + score.false_negatives == 0) continue;
+    chart.lines[0].points.emplace_back(middle, score.precision());
+    chart.lines[1].points.emplace_back(middle, score.recall());
+    chart.lines[2].points.emplace_back(middle, score.f1());
+  }
+  return draw_chart(chart);
+}
+
+}  // namespace
+
+void study_detection(const StudyTask& task) {
+  const std::vector<Way> ways = both_ways(task);
+  const std::vector<CloudScores> clouds = score_clouds(ways, task);
+  const Scorer sweeps = score_sweeps(task);
+  std::string table;
+  for (std::size_t w = 0; w < ways.size(); ++w) {
+    table += fmt::format("== {} clouds, {} ==\n", task.seeds.count, ways[w].name) +
+             score_table(clouds[w].scorer.result()) + pairs_line(clouds[w].pairs) + "\n";
+  }
+  table += fmt::format("== {} single sweeps, Scree, as configured ==\n", task.seeds.count) +
+           score_table(sweeps.result());
+  write_table(task, "detection.txt", table);
+  Drawing cloud_picture = cloud_chart(ways, clouds, task);
+  write_picture(task, "detection.png", cloud_picture);
+  Drawing sweep_picture = sweep_chart(sweeps.result(), task);
+  write_picture(task, "detection-sweeps.png", sweep_picture);
+}
+
+}  // namespace scree::cli
