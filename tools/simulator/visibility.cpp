@@ -36,6 +36,14 @@ std::vector<int> Visibility::seen() const {
   return found;
 }
 
+std::vector<int> Visibility::not_seen() const {
+  std::vector<int> found = small_ids(terrain_);
+  for (const int id : obstacle_ids(terrain_)) {
+    if (!hits_[static_cast<std::size_t>(id)].seen) found.push_back(id);
+  }
+  return found;
+}
+
 bool Visibility::is_known(const TerrainFeature& feature) const {
   constexpr int kLeastShots = 80;
   constexpr int kLeastSweeps = 3;

@@ -27,8 +27,8 @@ public:
   /// Closes the sweep: what it showed well enough counts as seen from now on.
   void end_sweep();
 
-  /// Obstacles that one sweep has shown well enough.
-  std::vector<int> seen() const;
+  std::vector<int> seen() const;      ///< obstacles that one sweep has shown well enough
+  std::vector<int> not_seen() const;  ///< all the others, stones and dents too
 
   struct Sight {
     std::vector<int> ids, ignore;  ///< asked for, and all the others
