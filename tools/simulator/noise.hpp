@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "scree/core/random.hpp"
@@ -14,8 +15,15 @@ public:
   GradientNoise(Random random, double size, double wavelength);
   /// Points outside the square take the value of its edge.
   double operator()(double x, double y) const;
+  /// Adds gain times the noise to a row of heights: at y, and at x, x + step, x + 2 step...
+  void add_to_row(double x, double step, double y, double gain, std::span<float> row) const;
 
 private:
+  struct Place {
+    std::size_t cell;
+    double share;  ///< 0..1 within it
+  };
+  Place place(double coordinate) const;
   struct Slope {
     double x, y;
   };

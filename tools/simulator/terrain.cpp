@@ -69,10 +69,8 @@ void Terrain::add_waves(std::span<const double> wavelengths,
     const GradientNoise noise(Random(seed, ++stream), settings_.size, wavelength);
     const double height = gain(wavelength);
     for (std::size_t row = 0; row < vertices_; ++row) {
-      for (std::size_t column = 0; column < vertices_; ++column) {
-        height_[row * vertices_ + column] +=
-            static_cast<float>(height * noise(coordinate(column), coordinate(row)));
-      }
+      noise.add_to_row(coordinate(0), settings_.cell, coordinate(row), height,
+                       std::span(height_).subspan(row * vertices_, vertices_));
     }
   }
 }
