@@ -157,7 +157,8 @@ private:
       return within > 0;
     }
     const Eigen::Vector2d& by = settings_.corridor[random.index(settings_.corridor.size())];
-    const double away = settings_.placed_within * std::sqrt(random.uniform());
+    // Denser near the way, where a low sensor sees into holes.
+    const double away = settings_.placed_within * std::pow(random.uniform(), 0.8);
     center = by + away * unit(random.uniform(0, 2 * std::numbers::pi));
     return center.cwiseAbs().maxCoeff() < most;
   }
@@ -167,6 +168,7 @@ private:
     if (!draw_center(group.reach(), random, center)) return false;
     std::vector<PlacedShape> members = group.members;
     std::vector<Footprint> footprints;
+    footprints.reserve(members.size());
     for (PlacedShape& member : members) {
       member.center += center;
       footprints.push_back(moved(member.shape.footprint(), member.center));

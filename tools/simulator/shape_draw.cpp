@@ -110,7 +110,9 @@ void Shape::draw_hole(Random& random) {
       break;
     case ShapeKind::pothole:
       sharpness_ = random.uniform(2.5, 6.0);
-      width = std::max(random.uniform(0.15, 0.45), 0.4 * size_);
+      width = 0.15 + 0.3 * std::sqrt(random.uniform());
+      // Water digs them no deeper than they are wide; a dent keeps the depth that was asked for.
+      if (size_ >= 0.2) size_ = std::clamp(2 * width * random.uniform(0.35, 1.0), 0.2, 1.0);
       longer = random.uniform(1.0, 1.3);
       break;
     case ShapeKind::crater:
