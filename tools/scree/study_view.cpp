@@ -90,9 +90,20 @@ void GroundView::box(const Obstacle& obstacle, Colour colour, double width) {
 }
 
 void GroundView::label(double x, double y, const std::string& text, Colour colour) {
-  drawing_.clip(plot_);
-  drawing_.text_with_rim(across(y) + 5, down(x) - 5, text, 12, colour);
-  drawing_.unclip();
+  constexpr double kSize = 12;
+  const double width = drawing_.text_width(text, kSize, true);
+  Rectangle place;
+  for (int attempt = 0; attempt < 16; ++attempt) {
+    // To the right and to the left, further down and up in turns.
+    const int row = (attempt / 2 + 1) / 2 * (attempt / 2 % 2 == 0 ? 1 : -1);
+    place = {attempt % 2 == 0 ? across(y) + 8 : across(y) - 8 - width,
+             down(x) - kSize / 2 + row * (kSize + 4), width, kSize};
+    const bool is_free = std::ranges::none_of(
+        labels_, [&](const Rectangle& other) { return place.overlaps(other); });
+    if (is_free && plot_.holds(place)) break;
+  }
+  labels_.push_back(place);
+  drawing_.text_with_rim(place.x, place.y + kSize - 2, text, kSize, colour);
 }
 
 PanelPage::PanelPage(int columns, int rows, const std::string& title, const std::string& subtitle)
