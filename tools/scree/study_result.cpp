@@ -33,7 +33,7 @@ void draw(PanelPage& page, int column, const Detector& detector, const CloudWorl
     const TrueObstacle& obstacle = *asked.obstacle;
     const char* what = obstacle.kind == ObstacleKind::positive ? "rock" : "hole";
     view.label(obstacle.center.x(), obstacle.center.y(),
-               fmt::format("{} missed ({:+.2f} m)", what, obstacle.height), kWrong);
+               fmt::format("{} missed: {:+.2f} m", what, obstacle.height), kWrong);
   }
   for (const auto& alarm : comparison.false_alarms) {
     const char* what = alarm.detection->kind == ObstacleKind::positive ? "rock" : "hole";

@@ -51,7 +51,7 @@ void study_stages(const StudyTask& task) {
                   static_cast<double>(bounds[1])));
   std::array<Stage, 4> stages = {{{"cloud (fig. 10)", 914'608, {}},
                                   {"after the voxel grid (fig. 11)", 413'591, {}},
-                                  {"edges, or bodies (fig. 12)", 82'242, {}},
+                                  {"edges or bodies (fig. 12)", 82'242, {}},
                                   {"after suppression (fig. 13)", 26'011, {}}}};
   for (std::size_t w = 0; w < ways.size(); ++w) {
     Detector detector = detector_of(ways[w].detect, task);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace scree::cli {
 namespace {
@@ -73,6 +74,11 @@ void GroundView::outline(const Outline& outline, Colour colour, double width) {
     cairo_line_to(cairo, across(corner.y()), down(corner.x()));
   }
   cairo_close_path(cairo);
+  Rectangle around;
+  cairo_path_extents(cairo, &around.x, &around.y, &around.width, &around.height);
+  around.width -= around.x;  // the library gives the far corner
+  around.height -= around.y;
+  taken_.push_back(around);
   drawing_.set(colour);
   cairo_set_line_width(cairo, width);
   cairo_stroke(cairo);
@@ -93,16 +99,19 @@ void GroundView::label(double x, double y, const std::string& text, Colour colou
   constexpr double kSize = 12;
   const double width = drawing_.text_width(text, kSize, true);
   Rectangle place;
-  for (int attempt = 0; attempt < 16; ++attempt) {
-    // To the right and to the left, further down and up in turns.
-    const int row = (attempt / 2 + 1) / 2 * (attempt / 2 % 2 == 0 ? 1 : -1);
-    place = {attempt % 2 == 0 ? across(y) + 8 : across(y) - 8 - width,
-             down(x) - kSize / 2 + row * (kSize + 4), width, kSize};
-    const bool is_free = std::ranges::none_of(
-        labels_, [&](const Rectangle& other) { return place.overlaps(other); });
+  for (int attempt = 0; attempt < 64; ++attempt) {
+    // All round, further and further away.
+    const double angle = attempt * std::numbers::pi / 4;
+    const double away = 8 + 10.0 * (attempt / 8);
+    place = {across(y) + std::cos(angle) * (away + width / 2) - width / 2,
+             down(x) - std::sin(angle) * (away + kSize / 2) - kSize / 2, width, kSize};
+    const bool is_free =
+        std::ranges::none_of(taken_, [&](const Rectangle& other) { return place.overlaps(other); });
     if (is_free && plot_.holds(place)) break;
   }
-  labels_.push_back(place);
+  taken_.push_back(place);
+  drawing_.line(across(y), down(x), std::clamp(across(y), place.x, place.x + width),
+                std::clamp(down(x), place.y, place.y + kSize), colour, 1);
   drawing_.text_with_rim(place.x, place.y + kSize - 2, text, kSize, colour);
 }
 
