@@ -133,8 +133,9 @@ void draw_legend_entry(Drawing& drawing, double& y, const std::string& name, Col
                        bool is_line, bool is_dashed) {
   if (is_line) {
     const double length = is_dashed ? 12 : 30;
-    for (double x = 0; x < 30; x += 18) {
-      drawing.line(kLegend + x, y - 5, kLegend + std::min(x + length, 30.0), y - 5, colour, 3);
+    const double step = is_dashed ? 18 : 30;
+    for (double x = 0; x < 30; x += step) {
+      drawing.line(kLegend + x, y - 5, kLegend + x + length, y - 5, colour, 3);
     }
   } else {
     drawing.fill({kLegend, y - 14, 30, 18}, colour);
@@ -144,6 +145,15 @@ void draw_legend_entry(Drawing& drawing, double& y, const std::string& name, Col
     y += 20;
   }
   y += 12;
+}
+
+/// A number over a bar, as large as the bar is wide.
+void draw_number(Drawing& drawing, const Rectangle& place, const std::string& number) {
+  constexpr double kLargest = 15;
+  const double width = drawing.text_width(number, kLargest, true);
+  const double size = std::min(kLargest, kLargest * (place.width - 3) / width);
+  drawing.text_with_rim(place.x + (place.width - width * size / kLargest) / 2, place.y, number,
+                        size, kText);
 }
 
 }  // namespace
@@ -190,18 +200,18 @@ Drawing draw_chart(const BarChart& chart) {
                  kPlot.y + kPlot.height + 24, name, 15, kText);
     for (std::size_t s = 0; s < chart.series.size(); ++s) {
       const double value = chart.series[s].values[group];
+      if (std::isnan(value)) continue;
       const double x = left + 0.09 * group_width + bar_width * static_cast<double>(s);
       const double base = kPlot.y + kPlot.height;
-      const double top = std::isnan(value) ? base : std::clamp(down(chart.y, value), kPlot.y, base);
+      const double top = std::clamp(down(chart.y, value), kPlot.y, base);
       drawing.fill({x + 1, top, bar_width - 2, base - top}, chart.series[s].colour);
-      const std::string label =
-          std::isnan(value) ? "-" : fmt::format("{:.{}f}", value, chart.decimals);
-      const double size = std::clamp(bar_width / 3.2, 8.0, 14.0);
-      drawing.text(x + bar_width / 2 - drawing.text_width(label, size) / 2, top - 5, label, size,
-                   kText);
+      draw_number(drawing, {x, top - 5, bar_width, 0},
+                  fmt::format("{:.{}f}", value, chart.decimals));
     }
   }
-  drawing.outline(kPlot, kFaint, 1);
+  drawing.line(kPlot.x, kPlot.y, kPlot.x, kPlot.y + kPlot.height, kFaint, 1);
+  drawing.line(kPlot.x, kPlot.y + kPlot.height, kPlot.x + kPlot.width, kPlot.y + kPlot.height,
+               kFaint, 1);
   double y = kPlot.y + 16;
   for (const BarSeries& series : chart.series) {
     draw_legend_entry(drawing, y, series.name, series.colour, false, false);

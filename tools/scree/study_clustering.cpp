@@ -1,6 +1,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "progress.hpp"
@@ -9,6 +10,24 @@
 
 namespace scree::cli {
 namespace {
+
+constexpr int kColumns = 3;  // of the picture
+/// The paper's share of points that are steep enough (fig. 11, 12).
+constexpr double kPaperEdgeShare = 82'242.0 / 413'591;
+
+/// The threshold that keeps this share of a cloud's points. @pre the detector has just seen it
+double threshold_for(const Detector& detector, double share) {
+  std::vector<float> slopes;
+  for (std::size_t i = 0; i < detector.slope_x().size(); ++i) {
+    const float slope = std::hypot(detector.slope_x()[i], detector.slope_y()[i]);
+    if (!std::isnan(slope)) slopes.push_back(slope);
+  }
+  if (slopes.empty()) return 0;
+  const auto rank =
+      static_cast<std::ptrdiff_t>((1 - share) * static_cast<double>(slopes.size() - 1));
+  std::nth_element(slopes.begin(), slopes.begin() + rank, slopes.end());
+  return static_cast<double>(slopes[static_cast<std::size_t>(rank)]);
+}
 
 /// How the clusters of some clouds fit their obstacles.
 struct Fit {
@@ -60,11 +79,13 @@ void judge(const Detector& detector, const CloudWorld& world, Fit& fit) {
   }
 }
 
-void draw(PanelPage& page, int column, const Detector& detector, const CloudWorld& world,
+void draw(PanelPage& page, std::size_t number, const Detector& detector, const CloudWorld& world,
           const std::string& name) {
   const auto clusters = detector.clusters().all();
-  GroundView view(page.drawing, page.panel(column, 0), world.terrain.half_size(),
-                  fmt::format("{}: {} clusters", name, clusters.size()));
+  GroundView view(
+      page.drawing,
+      page.panel(static_cast<int>(number) % kColumns, static_cast<int>(number) / kColumns),
+      world.terrain.half_size(), fmt::format("{}: {} clusters", name, clusters.size()));
   const PointCloud& points = detector.kept().points;
   std::vector<Colour> colours(points.size(), Colour{0.8, 0.8, 0.82});
   for (std::size_t c = 0; c < clusters.size(); ++c) {
@@ -82,15 +103,17 @@ void draw(PanelPage& page, int column, const Detector& detector, const CloudWorl
 }  // namespace
 
 void study_clustering(const StudyTask& task) {
-  std::vector<Way> ways = {{"plain Euclidean", DetectSettings::for_paper()},
-                           {"super-voxels", DetectSettings::for_paper()},
-                           {"Scree, as configured", task.settings.detect_cloud}};
-  ways[0].detect.cluster_method = ClusterMethod::euclidean;
-  ways[1].detect.cluster_method = ClusterMethod::supervoxel;
-  std::vector<Detector> detectors;
-  for (const Way& way : ways) detectors.push_back(detector_of(way.detect, task));
+  std::vector<Way> ways = {
+      {"plain Euclidean", DetectSettings::for_paper()},
+      {"super-voxels", DetectSettings::for_paper()},
+      {"Scree, as configured", task.settings.detect_cloud},
+      {"plain Euclidean, edges as many as the paper's", DetectSettings::for_paper()},
+      {"super-voxels, edges as many as the paper's", DetectSettings::for_paper()}};
+  ways[0].detect.cluster_method = ways[3].detect.cluster_method = ClusterMethod::euclidean;
+  ways[1].detect.cluster_method = ways[4].detect.cluster_method = ClusterMethod::supervoxel;
+  constexpr std::size_t kFirstOfPaperShare = 3;
   std::vector<Fit> fits(ways.size());
-  PanelPage page(static_cast<int>(ways.size()), 1, "Clusters of one cloud (paper: fig. 14 and 16)",
+  PanelPage page(kColumns, 2, "Clusters of one cloud (paper: fig. 14 and 16)",
                  fmt::format("seed {}; the paper: 5 clusters by plain Euclidean clustering, 18 by "
                              "super-voxels, for 18 obstacles",
                              task.seeds.first));
@@ -98,17 +121,22 @@ void study_clustering(const StudyTask& task) {
     Progress progress("clouds", task.seeds.count);
     for (std::size_t i = 0; i < task.seeds.count; ++i) {
       const CloudWorld world(TerrainSettings(), task.points, task.seeds.first + i);
+      double threshold = 0;
       for (std::size_t w = 0; w < ways.size(); ++w) {
-        list_of(detectors[w], world.cloud, ways[w].detect);
-        judge(detectors[w], world, fits[w]);
-        if (i == 0) draw(page, static_cast<int>(w), detectors[w], world, ways[w].name);
+        DetectSettings settings = ways[w].detect;
+        if (w >= kFirstOfPaperShare) settings.edge_threshold = threshold;
+        Detector detector = detector_of(settings, task);
+        list_of(detector, world.cloud, settings);
+        if (w == 0) threshold = threshold_for(detector, kPaperEdgeShare);
+        judge(detector, world, fits[w]);
+        if (i == 0) draw(page, w, detector, world, ways[w].name);
       }
       progress(i + 1);
     }
   }
   page.legend({0, 0, 0}, "true outline");
-  page.legend({0.8, 0.8, 0.82}, "clustered point of a removed group");
-  page.legend(scattered_colour(0), "other colours: a cluster each");
+  page.legend({0.8, 0.8, 0.82}, "point of a group too small for a cluster");
+  page.legend(scattered_colour(0), "any other colour: one cluster");
 
   std::string table = "method,clouds,clusters,obstacles,separate,merged,split,missed\n";
   for (std::size_t w = 0; w < ways.size(); ++w) {

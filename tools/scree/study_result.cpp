@@ -24,16 +24,21 @@ void draw(PanelPage& page, int column, const Detector& detector, const CloudWorl
   for (const auto& asked : comparison.asked) {
     const TrueObstacle& obstacle = *asked.obstacle;
     view.outline(obstacle.footprint, asked.is_right ? kGreen : kWrong, asked.is_right ? 2 : 3.5);
-    const char* sign = obstacle.kind == ObstacleKind::positive ? "rock" : "hole";
-    if (!asked.is_right) {
-      view.label(obstacle.center.x(), obstacle.center.y(), fmt::format("{} missed", sign), kWrong);
-    }
   }
   for (const Obstacle& obstacle : list.obstacles) {
     view.box(obstacle, obstacle.kind == ObstacleKind::positive ? kBlue : kRed, 2);
   }
+  for (const auto& asked : comparison.asked) {
+    if (asked.is_right) continue;
+    const TrueObstacle& obstacle = *asked.obstacle;
+    const char* what = obstacle.kind == ObstacleKind::positive ? "rock" : "hole";
+    view.label(obstacle.center.x(), obstacle.center.y(),
+               fmt::format("{} missed: {:+.2f} m", what, obstacle.height), kWrong);
+  }
   for (const auto& alarm : comparison.false_alarms) {
-    view.label(alarm.detection->center.x(), alarm.detection->center.y(), "false", kWrong);
+    const char* what = alarm.detection->kind == ObstacleKind::positive ? "rock" : "hole";
+    view.label(alarm.detection->center.x(), alarm.detection->center.y(), fmt::format("no {}", what),
+               kWrong);
   }
 }
 
@@ -75,7 +80,7 @@ void study_result(const StudyTask& task) {
   page.legend(kBlue, "found as positive");
   page.legend(kRed, "found as negative");
   page.legend(kGreen, "true outline, found rightly");
-  page.legend(kWrong, "true outline, missed; false: nothing there, or of the other kind");
+  page.legend(kWrong, "true outline, missed; \"no rock\": a false positive");
   write_table(task, "result.csv", table);
   write_picture(task, "result.png", page.drawing);
 }

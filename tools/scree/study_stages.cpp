@@ -18,13 +18,16 @@ struct Stage {
 
 /// Points in colours by their height between these two.
 void draw(PanelPage& page, int column, int row, PointView points, const CloudWorld& world,
-          std::string_view what, std::array<float, 2> bounds) {
+          std::string_view what, std::size_t paper, std::array<float, 2> bounds) {
   GroundView view(page.drawing, page.panel(column, row), world.terrain.half_size(),
-                  fmt::format("{}: {} points", what, points.size()));
+                  fmt::format("{}: {} points (paper: {})", what, points.size(), paper));
   const double pixels = points.size() > 200'000 ? 1 : points.size() > 50'000 ? 1.4 : 1.8;
   view.points(points, pixels, [&](std::size_t i) {
     return height_colour(static_cast<double>((points.z[i] - bounds[0]) / (bounds[1] - bounds[0])));
   });
+  for (const TrueObstacle& obstacle : world.truth.obstacles) {
+    view.outline(obstacle.footprint, {0, 0, 0, 0.8}, 1);
+  }
 }
 
 std::array<float, 2> bulk_of(std::span<const float> heights) {
@@ -48,7 +51,7 @@ void study_stages(const StudyTask& task) {
                   static_cast<double>(bounds[1])));
   std::array<Stage, 4> stages = {{{"cloud (fig. 10)", 914'608, {}},
                                   {"after the voxel grid (fig. 11)", 413'591, {}},
-                                  {"edges, or bodies (fig. 12)", 82'242, {}},
+                                  {"edges or bodies (fig. 12)", 82'242, {}},
                                   {"after suppression (fig. 13)", 26'011, {}}}};
   for (std::size_t w = 0; w < ways.size(); ++w) {
     Detector detector = detector_of(ways[w].detect, task);
@@ -59,10 +62,10 @@ void study_stages(const StudyTask& task) {
     stages[2].ours[w] = counts.edges;
     stages[3].ours[w] = counts.kept;
     if (w > 0) continue;
-    draw(page, 0, 0, world.cloud, world, "cloud", bounds);
-    draw(page, 1, 0, detector.thinned(), world, "voxel grid", bounds);
-    draw(page, 0, 1, detector.edges().points, world, "edges", bounds);
-    draw(page, 1, 1, detector.kept().points, world, "after suppression", bounds);
+    draw(page, 0, 0, world.cloud, world, "cloud", stages[0].paper, bounds);
+    draw(page, 1, 0, detector.thinned(), world, "voxel grid", stages[1].paper, bounds);
+    draw(page, 0, 1, detector.edges().points, world, "edges", stages[2].paper, bounds);
+    draw(page, 1, 1, detector.kept().points, world, "after suppression", stages[3].paper, bounds);
   }
   std::string table = "stage,paper";
   for (const Way& way : ways) table += fmt::format(",\"{}\"", way.name);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace scree::cli {
 namespace {
@@ -73,6 +74,11 @@ void GroundView::outline(const Outline& outline, Colour colour, double width) {
     cairo_line_to(cairo, across(corner.y()), down(corner.x()));
   }
   cairo_close_path(cairo);
+  Rectangle around;
+  cairo_path_extents(cairo, &around.x, &around.y, &around.width, &around.height);
+  around.width -= around.x;  // the library gives the far corner
+  around.height -= around.y;
+  taken_.push_back(around);
   drawing_.set(colour);
   cairo_set_line_width(cairo, width);
   cairo_stroke(cairo);
@@ -90,9 +96,23 @@ void GroundView::box(const Obstacle& obstacle, Colour colour, double width) {
 }
 
 void GroundView::label(double x, double y, const std::string& text, Colour colour) {
-  drawing_.clip(plot_);
-  drawing_.text_with_rim(across(y) + 5, down(x) - 5, text, 12, colour);
-  drawing_.unclip();
+  constexpr double kSize = 12;
+  const double width = drawing_.text_width(text, kSize, true);
+  Rectangle place;
+  for (int attempt = 0; attempt < 64; ++attempt) {
+    // All round, further and further away.
+    const double angle = attempt * std::numbers::pi / 4;
+    const double away = 8 + 10.0 * (attempt / 8);
+    place = {across(y) + std::cos(angle) * (away + width / 2) - width / 2,
+             down(x) - std::sin(angle) * (away + kSize / 2) - kSize / 2, width, kSize};
+    const bool is_free =
+        std::ranges::none_of(taken_, [&](const Rectangle& other) { return place.overlaps(other); });
+    if (is_free && plot_.holds(place)) break;
+  }
+  taken_.push_back(place);
+  drawing_.line(across(y), down(x), std::clamp(across(y), place.x, place.x + width),
+                std::clamp(down(x), place.y, place.y + kSize), colour, 1);
+  drawing_.text_with_rim(place.x, place.y + kSize - 2, text, kSize, colour);
 }
 
 PanelPage::PanelPage(int columns, int rows, const std::string& title, const std::string& subtitle)

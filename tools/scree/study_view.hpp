@@ -22,7 +22,7 @@ public:
   void points(PointView points, double pixels, const std::function<Colour(std::size_t)>& colour_of);
   void outline(const Outline& outline, Colour colour, double width);
   void box(const Obstacle& obstacle, Colour colour, double width);
-  /// A label beside a place, on a rim of white.
+  /// A label near a place, on a rim of white, where it covers no outline drawn so far and no label.
   void label(double x, double y, const std::string& text, Colour colour);
 
 private:
@@ -36,6 +36,7 @@ private:
   Drawing& drawing_;
   Rectangle plot_;
   double half_size_;
+  std::vector<Rectangle> taken_;  // by outlines and labels
 };
 
 /// A page with room for panels of ground in columns and rows, and its title.

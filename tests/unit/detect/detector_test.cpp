@@ -13,12 +13,11 @@ namespace {
 constexpr float kInf = std::numeric_limits<float>::infinity();
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-DetectSettings small() {
-  DetectSettings settings = DetectSettings::for_paper();
+DetectSettings small(DetectSettings settings) {
   settings.max_points = 60'000;
   settings.max_edge_points = 30'000;
   settings.max_obstacles = 16;
-  settings.cluster_tolerance = 0.5;
+  settings.max_ground_cells = 1 << 15;
   return settings;
 }
 
@@ -44,7 +43,7 @@ struct Found {
   FixedVector<Obstacle> obstacles{16};
 };
 
-Found detect(PointView cloud, const DetectSettings& settings = small()) {
+Found run(PointView cloud, const DetectSettings& settings) {
   Found found;
   Detector detector(settings, by_angles());
   detector.detect(cloud, found.obstacles);
@@ -52,7 +51,20 @@ Found detect(PointView cloud, const DetectSettings& settings = small()) {
   return found;
 }
 
-TEST(Detector, FindsTheBumpAndTheBowl) {
+/// The paper's chain, and ours with the ground's surface.
+class EachMethod : public testing::TestWithParam<DetectSettings (*)()> {
+protected:
+  static DetectSettings settings_for_test() { return small(GetParam()()); }
+  static Found detect(PointView cloud) { return run(cloud, settings_for_test()); }
+  static Found detect(PointView cloud, const DetectSettings& settings) {
+    return run(cloud, settings);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Detector, EachMethod,
+                         testing::Values(&DetectSettings::for_paper, &DetectSettings::for_cloud),
+                         [](const auto& method) { return method.index == 0 ? "paper" : "bodies"; });
+
+TEST_P(EachMethod, FindsTheBumpAndTheBowl) {
   const PointCloud cloud = test::bump_and_bowl(50'000);
   const Found found = detect(cloud);
   ASSERT_EQ(found.obstacles.size(), 2U);
@@ -72,26 +84,26 @@ TEST(Detector, FindsTheBumpAndTheBowl) {
   EXPECT_EQ(found.obstacles[1].id, 2);
 }
 
-TEST(Detector, TheBaselineAndEverySwitchWork) {
+TEST(PaperMethod, TheBaselineAndEverySwitchWork) {
   const PointCloud cloud = test::bump_and_bowl(50'000);
   for (int switches = 0; switches < 8; ++switches) {
-    DetectSettings settings = small();
+    DetectSettings settings = small(DetectSettings::for_paper());
     settings.voxel_grid = (switches & 1) != 0;
     settings.suppression = (switches & 2) != 0;
     settings.cluster_method =
         (switches & 4) != 0 ? ClusterMethod::euclidean : ClusterMethod::supervoxel;
     if (settings.cluster_method == ClusterMethod::euclidean) settings.min_cluster_size = 30;
-    const Found found = detect(cloud, settings);
+    const Found found = run(cloud, settings);
     EXPECT_EQ(found.obstacles.size(), 2U) << switches;
     EXPECT_EQ(found.counts.voxels < cloud.size(), settings.voxel_grid) << switches;
     EXPECT_EQ(found.counts.kept < found.counts.edges, settings.suppression) << switches;
   }
 }
 
-TEST(Detector, TwiceTheSameAndNothingAllocatedTheSecondTime) {
+TEST_P(EachMethod, TwiceTheSameAndNothingAllocatedTheSecondTime) {
   const PointCloud cloud = test::bump_and_bowl(50'000);
   for (const auto method : {ClusterMethod::supervoxel, ClusterMethod::euclidean}) {
-    DetectSettings settings = small();
+    DetectSettings settings = settings_for_test();
     settings.cluster_method = method;
     Detector detector(settings, by_angles());
     FixedVector<Obstacle> first(16), second(16);
@@ -108,7 +120,7 @@ TEST(Detector, TwiceTheSameAndNothingAllocatedTheSecondTime) {
   }
 }
 
-TEST(Detector, SurvivesCloudsWithNothingInThem) {
+TEST_P(EachMethod, SurvivesCloudsWithNothingInThem) {
   PointCloud cloud(60'000);
   EXPECT_TRUE(detect(cloud).obstacles.empty());
   cloud.push_back(1, 2, 3, 4);
@@ -117,7 +129,7 @@ TEST(Detector, SurvivesCloudsWithNothingInThem) {
   }
   for (const bool voxel_grid : {true, false}) {
     for (const auto method : {ClusterMethod::supervoxel, ClusterMethod::euclidean}) {
-      DetectSettings settings = small();
+      DetectSettings settings = settings_for_test();
       settings.max_points = settings.max_edge_points = 2000;
       settings.voxel_grid = voxel_grid;
       settings.cluster_method = method;
@@ -129,7 +141,7 @@ TEST(Detector, SurvivesCloudsWithNothingInThem) {
   }
 }
 
-TEST(Detector, RefusesWhatIsNotFiniteOrTooFarOut) {
+TEST_P(EachMethod, RefusesWhatIsNotFiniteOrTooFarOut) {
   PointCloud cloud = test::bump_and_bowl(50'000);
   const Found clean = detect(cloud);
   PointCloud dirty(60'000);
@@ -147,7 +159,7 @@ TEST(Detector, RefusesWhatIsNotFiniteOrTooFarOut) {
     dirty.push_back(cloud.x[i], cloud.y[i], cloud.z[i], cloud.reflectivity[i]);
   }
   for (const bool voxel_grid : {true, false}) {
-    DetectSettings settings = small();
+    DetectSettings settings = settings_for_test();
     settings.voxel_grid = voxel_grid;
     const Found found = detect(dirty, settings);
     EXPECT_EQ(found.counts.refused, added);
@@ -155,16 +167,16 @@ TEST(Detector, RefusesWhatIsNotFiniteOrTooFarOut) {
   }
 }
 
-TEST(Detector, ReflectivityThatIsNotANumberDoesNotSpread) {
+TEST_P(EachMethod, ReflectivityThatIsNotANumberDoesNotSpread) {
   PointCloud cloud = test::bump_and_bowl(50'000);
   for (std::size_t i = 0; i < cloud.size(); i += 3) cloud.reflectivity[i] = kNan;
   const Found found = detect(cloud);
   EXPECT_EQ(found.obstacles.size(), 2U);
 }
 
-TEST(Detector, WorksAtTheRimOfItsCells) {
+TEST_P(EachMethod, WorksAtTheRimOfItsCells) {
   // Far from the origin, up to where the cells end; beyond, every point is refused.
-  DetectSettings settings = small();
+  DetectSettings settings = settings_for_test();
   const PointCloud cloud = test::bump_and_bowl(50'000);
   for (const float shift : {-400.0F, 400.0F, 5000.0F}) {
     PointCloud moved(cloud.size());
@@ -180,7 +192,7 @@ TEST(Detector, WorksAtTheRimOfItsCells) {
   }
 }
 
-TEST(Detector, PassesUnderWhatHangsHighAboveTheGround) {
+TEST_P(EachMethod, PassesUnderWhatHangsHighAboveTheGround) {
   // A ceiling over everything, a branch over the bump, and two stray points far below the ground.
   const PointCloud cloud = test::bump_and_bowl(40'000);
   PointCloud covered(60'000);
@@ -191,22 +203,22 @@ TEST(Detector, PassesUnderWhatHangsHighAboveTheGround) {
   covered.push_back(test::kBumpX, 0.1F, -3, 0);
   covered.push_back(test::kBumpX, 0.3F, -4, 0);
   EXPECT_EQ(detect(covered).obstacles.size(), 2U);
-  DetectSettings settings = small();
+  DetectSettings settings = settings_for_test();
   settings.clearance = 0;
   EXPECT_EQ(detect(covered, settings).counts.below_clearance,
             detect(covered, settings).counts.voxels);
 }
 
-TEST(Detector, CountsWhatDoesNotFit) {
+TEST_P(EachMethod, CountsWhatDoesNotFit) {
   const PointCloud cloud = test::bump_and_bowl(60'000);
-  DetectSettings settings = small();
+  DetectSettings settings = settings_for_test();
   settings.max_points = 50'000;
   EXPECT_EQ(detect(cloud, settings).counts.dropped, 10'000U);
-  settings = small();
+  settings = settings_for_test();
   settings.max_edge_points = 100;
   const Found few = detect(cloud, settings);
   EXPECT_EQ(few.counts.edges_dropped, few.counts.edges - 100);
-  settings = small();
+  settings = settings_for_test();
   settings.max_obstacles = 1;
   Detector detector(settings, by_angles());
   FixedVector<Obstacle> one(1);
@@ -215,10 +227,10 @@ TEST(Detector, CountsWhatDoesNotFit) {
   EXPECT_EQ(detector.counts().obstacles_dropped, 1U);
 }
 
-TEST(Detector, SurvivesExtremeSettings) {
+TEST_P(EachMethod, SurvivesExtremeSettings) {
   const PointCloud cloud = test::bump_and_bowl(5'000);
   for (const double length : {0.001, 10.0}) {
-    DetectSettings settings = small();
+    DetectSettings settings = settings_for_test();
     settings.leaf_size = settings.kernel_spacing = settings.kernel_radius = length;
     settings.suppression_distance = settings.suppression_radius = length;
     settings.voxel_size = settings.seed_distance = settings.cluster_tolerance = length;

@@ -1,0 +1,103 @@
+"""scree study as a program, with tiny settings: python3 study_test.py SCREE [TEST ...]"""
+
+import os
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+import zlib
+
+SCREE = sys.argv[1]
+
+
+class StudyTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def scree(self, *arguments, code=0):
+        done = subprocess.run([SCREE, *arguments], capture_output=True, text=True, timeout=250)
+        self.assertEqual(done.returncode, code, done.stderr)
+        return done
+
+    def study(self, name, table, *pictures, points=300000):
+        out = os.path.join(self.folder, "new", "folder")
+        said = self.scree("study", name, "--out", out, "--seeds", "1", "--training", "1",
+                          "--points", str(points)).stdout  # fmt: skip
+        with open(os.path.join(out, table)) as file:
+            text = file.read()
+        self.assertIn(text, said)
+        self.assertGreater(len(text.splitlines()), 2)
+        for picture in pictures:
+            self.check_png(os.path.join(out, picture))
+        self.assertEqual(sorted(os.listdir(out)), sorted([table, *pictures]))
+        return [line.split(",") for line in text.splitlines()]
+
+    def check_png(self, path):
+        """A whole PNG, and more than one colour in it."""
+        with open(path, "rb") as file:
+            data = file.read()
+        self.assertEqual(data[:8], b"\x89PNG\r\n\x1a\n")
+        at, pixels, kinds = 8, b"", []
+        while at < len(data):
+            size, kind = struct.unpack(">I4s", data[at : at + 8])
+            body = data[at + 8 : at + 8 + size]
+            (sum_,) = struct.unpack(">I", data[at + 8 + size : at + 12 + size])
+            self.assertEqual(zlib.crc32(kind + body), sum_)
+            kinds.append(kind)
+            pixels += body if kind == b"IDAT" else b""
+            at += 12 + size
+        self.assertEqual((kinds[0], kinds[-1]), (b"IHDR", b"IEND"))
+        self.assertGreater(len(set(zlib.decompress(pixels))), 16)
+
+    def test_training(self):
+        rows = self.study("training", "training.csv", "training.png")
+        self.assertEqual(rows[1][0], "0")
+        first, last = [float(v) for v in rows[1][1:]], [float(v) for v in rows[-1][1:]]
+        self.assertEqual(len(set(first)), 1)  # all from the same weights
+        self.assertTrue(all(after < before for before, after in zip(first, last)))
+
+    def test_clustering(self):
+        self.study("clustering", "clustering.csv", "clustering.png")
+
+    def test_seed_distance(self):
+        rows = self.study("seed-distance", "seed-distance.csv", "seed-distance.png")
+        self.assertTrue(all(0 <= float(value) <= 1 for row in rows[1:] for value in row[1:]))
+
+    def test_stages(self):
+        rows = self.study("stages", "stages.csv", "stages.png")
+        self.assertEqual([row[1] for row in rows[1:]], ["914608", "413591", "82242", "26011"])
+        counts = [int(row[2]) for row in rows[1:]]
+        self.assertEqual(counts, sorted(counts, reverse=True))
+
+    def test_result(self):
+        self.study("result", "result.csv", "result.png")
+
+    def test_classifiers(self):
+        rows = self.study("classifiers", "classifiers.csv", "classifiers.png", points=600000)
+        self.assertEqual([row[-3:] for row in rows][-1], ["0.963", "0.988", "0.975"])
+
+    def test_detection(self):
+        self.study("detection", "detection.txt", "detection.png", "detection-sweeps.png")
+
+    def test_hardly_any_points_are_no_crash(self):
+        for name in ("training", "clustering", "seed-distance", "stages", "result", "detection"):
+            self.scree("study", name, "--out", self.folder, "--seeds", "1", "--points", "1000")
+
+    def test_failures_are_one_sentence(self):
+        for arguments in (["stages", "--out", "/dev/null/x"], ["stages", "--out", "/proc"]):
+            said = self.scree("study", *arguments, "--seeds", "1", "--points", "1000", code=1)
+            self.assertEqual(len(said.stderr.splitlines()), 1, said.stderr)
+
+    def test_wrong_usage_exits_2(self):
+        self.scree("study", code=2)
+        self.scree("study", "stages", code=2)
+        self.scree("study", "nothing", "--out", self.folder, code=2)
+        self.scree("study", "stages", "--out", self.folder, "--seeds", "0", code=2)
+
+
+if __name__ == "__main__":
+    outcome = unittest.main(argv=sys.argv[:1] + sys.argv[2:], exit=False).result
+    sys.exit(not outcome.wasSuccessful())

@@ -1,0 +1,159 @@
+#include "scree/detect/ground_surface.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+
+namespace scree {
+namespace {
+
+constexpr std::size_t kMaxPoints = 60'000, kMaxCells = 1 << 15;
+constexpr GroundSurfaceSettings kSettings{
+    .cell_size = 0.08F, .cell_points = 2.15F, .max_slope = 0.34F, .tolerance = 0.1F};
+
+/// 8 x 8 m of this shape, seen evenly, with noise of 5 mm.
+PointCloud seen(const std::function<float(float, float)>& height, std::size_t points = 30'000) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> place(-4, 4);
+  std::normal_distribution<float> noise(0, 0.005F);
+  PointCloud cloud(points);
+  while (cloud.size() < points) {
+    const float x = place(random), y = place(random);
+    cloud.push_back(x, y, height(x, y) + noise(random), 0);
+  }
+  return cloud;
+}
+
+GroundSurface surface_of(PointView cloud) {
+  GroundSurface surface(kMaxPoints, kMaxCells);
+  surface.build(cloud, kSettings);
+  return surface;
+}
+
+bool in_square(float x, float y, float half_width) {
+  return std::abs(x) < half_width && std::abs(y) < half_width;
+}
+
+float slope(float x) {
+  return 0.25F * x;
+}
+
+TEST(GroundSurface, FollowsASlope) {
+  const GroundSurface surface = surface_of(seen([](float x, float) { return slope(x); }));
+  for (float x = -3.5F; x < 3.6F; x += 0.5F) {
+    EXPECT_TRUE(surface.is_ground(x, 1)) << x;
+    EXPECT_NEAR(surface.height(x, 1), slope(x), 0.015) << x;
+  }
+}
+
+TEST(GroundSurface, SpansRocksAndHolesWithTheSlopeAroundThem) {
+  for (const float height : {0.2F, 1.2F, -0.2F, -1.0F}) {
+    for (const float half_width : {0.15F, 0.5F, 1.0F}) {
+      const GroundSurface surface = surface_of(seen([&](float x, float y) {
+        return slope(x) + (in_square(x, y, half_width) ? height : 0.0F);
+      }));
+      EXPECT_NEAR(surface.height(0, 0), 0, 0.04) << height << ' ' << half_width;
+      EXPECT_FALSE(surface.is_ground(0, 0)) << height << ' ' << half_width;
+      EXPECT_TRUE(surface.is_ground(half_width + 0.4F, 0)) << height << ' ' << half_width;
+    }
+  }
+}
+
+TEST(GroundSurface, IsNotRaisedBetweenTwoTallRocks) {
+  const GroundSurface surface = surface_of(
+      seen([](float x, float y) { return in_square(std::abs(x) - 0.65F, y, 0.5F) ? 1.0F : 0.0F; }));
+  EXPECT_NEAR(surface.height(0, 0), 0, 0.03);
+  EXPECT_TRUE(surface.is_ground(0, 0));
+}
+
+TEST(GroundSurface, FollowsASmoothHollowDownToThePotholeInIt) {
+  const GroundSurface surface = surface_of(seen([](float x, float y) {
+    const float share = std::min(std::hypot(x, y) / 2.5F, 1.0F);
+    const float hollow = -0.2F * (1 + std::cos(3.14159F * share));
+    return hollow - (in_square(x, y, 0.2F) ? 0.3F : 0.0F);
+  }));
+  EXPECT_NEAR(surface.height(0, 0), -0.4, 0.03);
+  EXPECT_NEAR(surface.height(1.25F, 0), -0.2, 0.02);
+  EXPECT_TRUE(surface.is_ground(0.6F, 0));
+  EXPECT_FALSE(surface.is_ground(0, 0));
+}
+
+TEST(GroundSurface, IsNotMovedBySinglePointsThatBelongToNothing) {
+  PointCloud cloud = seen([](float, float) { return 0.0F; });
+  for (std::size_t i = 0; i < cloud.size(); i += 1500) cloud.z[i] += i % 2 == 0 ? 1.0F : -0.5F;
+  const GroundSurface surface = surface_of(cloud);
+  for (std::size_t i = 0; i < cloud.size(); i += 1500) {
+    EXPECT_NEAR(surface.height(cloud.x[i], cloud.y[i]), 0, 0.03);
+  }
+}
+
+TEST(GroundSurface, TakesLargerCellsWhereTheCloudIsSparseOrWide) {
+  const auto flat = [](float, float) { return 0.0F; };
+  EXPECT_EQ(surface_of(seen(flat, 60'000)).cell_size(), kSettings.cell_size);
+  const GroundSurface sparse = surface_of(seen(flat, 3'000));
+  EXPECT_GT(sparse.cell_size(), 1.5F * kSettings.cell_size);
+  EXPECT_TRUE(sparse.is_ground(1, 1));
+
+  PointCloud wide = seen(flat);
+  for (float& x : wide.x) x *= 100;
+  const GroundSurface coarse = surface_of(wide);
+  EXPECT_LE(coarse.columns() * coarse.rows(), kMaxCells);
+  EXPECT_NEAR(coarse.height(300, 0), 0, 0.02);
+}
+
+TEST(GroundSurface, AnswersForCloudsOfNothingAndFarOutside) {
+  PointCloud cloud(100);
+  EXPECT_EQ(surface_of(cloud).height(1, 2), 0);
+  cloud.push_back(5, 6, 7, 0);
+  EXPECT_TRUE(std::isfinite(surface_of(cloud).height(-1e6F, 1e6F)));
+  while (cloud.push_back(5, 6, 7, 0)) {
+  }
+  const GroundSurface one_place = surface_of(cloud);
+  EXPECT_EQ(one_place.points_in(one_place.cell_at(5, 6)), 100U);
+}
+
+TEST(RasterFill, SpansAHoleInAPlaneWithThePlane) {
+  for (const std::size_t side : {7U, 16U, 33U}) {
+    const auto plane = [](std::size_t column, std::size_t row) {
+      return 0.3F * static_cast<float>(column) - 0.1F * static_cast<float>(row);
+    };
+    std::vector<float> heights(side * side, 99);
+    std::vector<std::uint8_t> known(side * side, 0);
+    for (std::size_t row = 0; row < side; ++row) {
+      for (std::size_t column = 0; column < side; ++column) {
+        const bool is_inside = std::min(row, column) >= 2 && std::max(row, column) + 2 < side;
+        if (is_inside) continue;
+        known[row * side + column] = 1;
+        heights[row * side + column] = plane(column, row);
+      }
+    }
+    RasterFill fill(side * side);
+    fill.fill(side, side, known.data(), heights.data());
+    const float range = 0.4F * static_cast<float>(side);
+    for (std::size_t row = 0; row < side; ++row) {
+      for (std::size_t column = 0; column < side; ++column) {
+        EXPECT_NEAR(heights[row * side + column], plane(column, row), 0.02 * range) << side;
+      }
+    }
+  }
+}
+
+TEST(RasterFill, KeepsWhatIsKnownAndFillsAnyShape) {
+  for (const auto& [columns, rows] : {std::pair{1U, 1U}, {1U, 9U}, {5U, 1U}, {3U, 8U}}) {
+    RasterFill fill(columns * rows);
+    std::vector<float> heights(columns * rows, 7);
+    std::vector<std::uint8_t> known(columns * rows, 0);
+    fill.fill(columns, rows, known.data(), heights.data());
+    EXPECT_EQ(heights, std::vector<float>(columns * rows, 0));
+    known.back() = 1;
+    heights.back() = 4;
+    fill.fill(columns, rows, known.data(), heights.data());
+    EXPECT_EQ(heights.back(), 4);
+    EXPECT_NEAR(heights.front(), 4, 1e-5);
+  }
+}
+
+}  // namespace
+}  // namespace scree

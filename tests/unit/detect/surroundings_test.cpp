@@ -1,0 +1,88 @@
+#include "scree/detect/surroundings.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "scree/detect/detector.hpp"
+
+namespace scree {
+namespace {
+
+/// Flat ground of 6 x 6 m; `shape` says what else stands at a place, given chance.
+template <class Shape>
+PointCloud ground_with(Shape&& shape) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> place(-3, 3), chance(0, 1);
+  PointCloud cloud(40'000);
+  while (cloud.size() < cloud.capacity()) {
+    const float x = place(random), y = place(random);
+    const float z = shape(x, y, chance(random));
+    if (!std::isnan(z)) cloud.push_back(x, y, z, 0);
+  }
+  return cloud;
+}
+
+/// Features of the largest cluster.
+Features features_of(PointView cloud) {
+  DetectSettings settings = DetectSettings::for_cloud();
+  settings.max_points = 40'000;
+  settings.max_ground_cells = 1 << 14;
+  Detector detector(settings, Network());
+  FixedVector<Obstacle> unused(16);
+  detector.detect(cloud, unused);
+  const auto clusters = detector.clusters().all();
+  EXPECT_FALSE(clusters.empty());
+  if (clusters.empty()) return {};
+  return std::ranges::max_element(
+             clusters, {}, [](const Cluster& cluster) { return cluster.end - cluster.begin; })
+      ->features;
+}
+
+bool inside(float x, float y) {
+  return std::abs(x) < 0.5F && std::abs(y) < 0.3F;
+}
+
+TEST(Surroundings, LightPassesThroughATuftAndNotThroughARock) {
+  const Features rock =
+      features_of(ground_with([](float x, float y, float) { return inside(x, y) ? 0.4F : 0.0F; }));
+  const Features tuft = features_of(ground_with([](float x, float y, float chance) {
+    return inside(x, y) && chance < 0.6F ? 0.08F + 0.5F * chance : 0.0F;
+  }));
+  EXPECT_LT(rock[through_share], 0.1);
+  EXPECT_GT(tuft[through_share], 0.5);
+}
+
+TEST(Surroundings, MeasuresTheBoxAndTheSlope) {
+  const Features rock =
+      features_of(ground_with([](float x, float y, float) { return inside(x, y) ? 0.4F : 0.0F; }));
+  EXPECT_NEAR(rock[box_length], 1.0, 0.1);
+  EXPECT_NEAR(rock[box_width], 0.6, 0.1);
+  EXPECT_NEAR(rock[max_height], 0.4, 0.02);
+  EXPECT_GT(rock[steepness], 0.3);
+  EXPECT_LT(rock[unseen_share], 0.05);
+  EXPECT_EQ(rock[rim_share], 0);
+}
+
+TEST(Surroundings, SeesWhatWasNotSeen) {
+  const Features pit = features_of(ground_with([](float x, float y, float) {
+    if (!inside(x, y)) return 0.0F;
+    return x > 0 && y > 0 ? NAN : -0.5F;
+  }));
+  EXPECT_LT(pit[min_height], -0.4);
+  EXPECT_NEAR(pit[unseen_share], 0.25, 0.1);
+}
+
+TEST(Surroundings, ARimBordersOnItsHole) {
+  const Features rim = features_of(ground_with([](float x, float y, float) {
+    const float radius = std::hypot(x, y);
+    if (radius < 0.3F) return -0.3F;
+    return radius < 0.7F ? 0.3F : 0.0F;
+  }));
+  EXPECT_GT(rim[max_height], 0.2);
+  EXPECT_GT(rim[rim_share], 0.3);
+}
+
+}  // namespace
+}  // namespace scree
