@@ -14,7 +14,7 @@ VectorXd gradient(const Network& network, std::span<const Sample> samples) {
     const auto block = samples.subspan(begin, std::min(kBlock, samples.size() - begin));
     const Eigen::MatrixXd j = jacobian(network, block);
     const VectorXd e = errors(network, block);
-    sum.noalias() += j.transpose() * e;
+    for (Eigen::Index w = 0; w < j.cols(); ++w) sum[w] += j.col(w).dot(e);
   }
   const double terms = static_cast<double>(samples.size() * Network::kOutputs);
   return samples.empty() ? sum : VectorXd(2 / terms * sum);
