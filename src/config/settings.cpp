@@ -22,7 +22,7 @@ DetectSettings DetectSettings::for_cloud() {
   detect.suppression = false;
   detect.cluster_method = ClusterMethod::euclidean;
   detect.cluster_tolerance = 0.20;
-  detect.min_cluster_size = 5;
+  detect.min_cluster_size = 4;
   detect.network = "network_cloud.txt";
   return detect;
 }

@@ -96,6 +96,7 @@ void Detector::choose_candidates() {
   height_.assign(points.size(), 0);
   if (!settings_.uses_surface()) return;
   surface_.build(points, {.cell_size = static_cast<float>(settings_.ground_cell),
+                          .cell_points = static_cast<float>(settings_.ground_points),
                           .max_slope = static_cast<float>(settings_.ground_slope),
                           .tolerance = static_cast<float>(settings_.ground_tolerance)});
   const auto least = static_cast<float>(settings_.body_height);

@@ -26,8 +26,14 @@ GroundSurface::GroundSurface(std::size_t max_points, std::size_t max_cells)
       fill_(max_cells) {}
 
 void GroundSurface::build(PointView points, const GroundSurfaceSettings& settings) {
-  lay_out(points, settings.cell_size);
-  gather(points);
+  // Cells too small for the density of the points leave the ground in tatters.
+  constexpr float kGrowth = 1.25F;
+  constexpr int kMostGrowths = 8;
+  float cell_size = settings.cell_size;
+  for (int growth = 0;; ++growth, cell_size *= kGrowth) {
+    lay_out(points, cell_size);
+    if (gather(points) >= settings.cell_points || growth == kMostGrowths) break;
+  }
   find_smooth_cells(settings.max_slope);
   find_patches(settings.max_slope);
   join_patches(settings.tolerance);
@@ -62,7 +68,7 @@ std::size_t GroundSurface::cell_at(float x, float y) const {
          index((x - low_x_) * inverse_, columns_);
 }
 
-void GroundSurface::gather(PointView points) {
+float GroundSurface::gather(PointView points) {
   const std::size_t cells = columns_ * rows_;
   // Counting sort: begin_[cell + 2] counts, then begin_[cell + 1] runs from each cell's first place
   // to its last.
@@ -74,13 +80,16 @@ void GroundSurface::gather(PointView points) {
     z_[begin_[cell_at(points.x[i], points.y[i]) + 1]++] = points.z[i];
   }
   median_.resize(cells);
+  std::size_t occupied = 0;
   for (std::size_t cell = 0; cell < cells; ++cell) {
+    if (points_in(cell) > 0) ++occupied;
     float* const first = z_.begin() + begin_[cell];
     float* const last = z_.begin() + begin_[cell + 1];
     float* const middle = first + (last - first) / 2;
     if (first != last) std::nth_element(first, middle, last);
     median_[cell] = first == last ? kUnknown : *middle;
   }
+  return static_cast<float>(points.size()) / static_cast<float>(std::max<std::size_t>(occupied, 1));
 }
 
 float GroundSurface::blurred(std::size_t cell) const {

@@ -19,11 +19,13 @@ void run(const Options& options) {
     throw CLI::ValidationError("give either the folder of a capture or --cloud FILE.pcd");
   }
   Result<void> written;
+  const auto scene = scene_named(options.scene);
   if (options.cloud.empty()) {
     Progress progress("casting", 1000);
-    written = write_capture(options.folder, options.capture, std::ref(progress));
+    CaptureSettings settings = options.capture;
+    settings.scene = scene.value_or(settings.scene);
+    written = write_capture(options.folder, settings, std::ref(progress));
   } else {
-    const auto scene = scene_named(options.scene);
     const std::uint64_t seed = options.capture.seed;
     written = write_cloud(options.cloud, options.points, seed,
                           scene ? cloud_terrain(*scene, seed) : TerrainSettings());
@@ -50,15 +52,37 @@ void add_simulate(CLI::App& app) {
       ->check([](const std::string& name) {
         return scene_named(name) ? std::string() : "there is no scene " + name;
       });
-  command->add_option("--seconds", options->capture.seconds, "length of the capture")
+  auto& capture = options->capture;
+  command->add_option("--seconds", capture.seconds, "length of the capture")
       ->excludes(cloud)
       ->check(CLI::Range(0.05, 3600.0))
       ->capture_default_str();
-  command->add_option("--rate", options->capture.rate_hz, "turns of the lidar a second")
+  auto* at_rest =
+      command->add_flag("--at-rest", capture.at_rest, "the robot stands")->excludes(cloud);
+  command
+      ->add_option("--speed", capture.speed,
+                   "mean speed while driving, m/s; without it drawn from 0.4 to 1.6")
+      ->excludes(cloud)
+      ->excludes(at_rest)
+      ->check(CLI::Range(0.3, 2.0));
+  command->add_option("--rate", capture.rate_hz, "turns of the lidar a second")
       ->excludes(cloud)
       ->check(CLI::Range(5.0, 20.0))
       ->capture_default_str();
-  command->add_flag("--dual", options->capture.dual, "dual returns")->excludes(cloud);
+  command->add_flag("--dual", capture.dual, "dual returns")->excludes(cloud);
+  command->add_flag("--pps", capture.pps, "the lidar's clock is locked to GPS")->excludes(cloud);
+  command->add_option("--packet-loss", capture.packet_loss, "share of the lidar's packets lost")
+      ->excludes(cloud)
+      ->check(CLI::Range(0.0, 0.5))
+      ->capture_default_str();
+  command->add_option("--imu-rate", capture.imu_rate_hz, "samples of the IMU a second")
+      ->excludes(cloud)
+      ->check(CLI::Range(100.0, 400.0))
+      ->capture_default_str();
+  command
+      ->add_flag("--imu-bursts", capture.imu_bursts,
+                 "a USB adapter hands the IMU's bytes on every 16 ms only")
+      ->excludes(cloud);
   command->add_option("--points", options->points.points, "of the cloud")
       ->needs(cloud)
       ->check(CLI::Range(std::size_t{1}, std::size_t{100'000'000}))

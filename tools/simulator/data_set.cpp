@@ -24,7 +24,7 @@ CloudSettings varied_cloud(std::uint64_t seed) {
   constexpr std::uint64_t kStream = 0x7EA1;
   Random random(seed, kStream);
   CloudSettings cloud;
-  cloud.points = 600'000 + random.index(400'001);
+  cloud.points = 250'000 + random.index(750'001);
   cloud.noise = random.uniform(0.004, 0.018);
   cloud.scattered_share = random.uniform(0, 0.001);
   cloud.density_spread = random.uniform(1, 4);

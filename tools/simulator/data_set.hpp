@@ -21,7 +21,7 @@ struct SeedRange {
 /// The scenes in turn, and after them a terrain of the default kind with more features than a walk
 /// would meet.
 TerrainSettings varied_terrain(std::uint64_t seed);
-/// 600,000 to 1,000,000 points; noise, density, ghosting and scattered points differ from seed to
+/// 250,000 to 1,000,000 points; noise, density, ghosting and scattered points differ from seed to
 /// seed.
 CloudSettings varied_cloud(std::uint64_t seed);
 

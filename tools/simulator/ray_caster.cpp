@@ -7,51 +7,84 @@
 namespace scree {
 namespace {
 
-constexpr std::size_t kBlockCells = 16;
+constexpr std::size_t kSmallestBlock = 4;  // cells a side
+constexpr std::size_t kBlocksABlock = 4;   // of the next smaller ones, a side
 
 }  // namespace
 
-RayCaster::RayCaster(const Terrain& terrain)
-    : terrain_(terrain),
-      blocks_((terrain.vertices() - 1 + kBlockCells - 1) / kBlockCells),
-      block_size_(static_cast<double>(kBlockCells) * terrain.settings().cell),
-      highest_(blocks_ * blocks_, std::numeric_limits<float>::lowest()) {
+RayCaster::RayCaster(const Terrain& terrain) : terrain_(terrain) {
   const std::size_t last = terrain.vertices() - 1;
-  for (std::size_t row = 0; row < blocks_ * blocks_; ++row) {
-    const std::size_t first_row = row / blocks_ * kBlockCells;
-    const std::size_t first_column = row % blocks_ * kBlockCells;
-    for (std::size_t v = first_row; v <= std::min(first_row + kBlockCells, last); ++v) {
-      for (std::size_t u = first_column; u <= std::min(first_column + kBlockCells, last); ++u) {
-        highest_[row] = std::max(highest_[row], terrain.vertex(u, v));
+  Level& small = levels_[0];
+  small.blocks = (last + kSmallestBlock - 1) / kSmallestBlock;
+  small.block_size = static_cast<double>(kSmallestBlock) * terrain.settings().cell;
+  small.highest.assign(small.blocks * small.blocks, std::numeric_limits<float>::lowest());
+  for (std::size_t block = 0; block < small.highest.size(); ++block) {
+    const std::size_t row = block / small.blocks * kSmallestBlock;
+    const std::size_t column = block % small.blocks * kSmallestBlock;
+    for (std::size_t v = row; v <= std::min(row + kSmallestBlock, last); ++v) {
+      for (std::size_t u = column; u <= std::min(column + kSmallestBlock, last); ++u) {
+        small.highest[block] = std::max(small.highest[block], terrain.vertex(u, v));
       }
     }
   }
-  top_ = static_cast<double>(*std::max_element(highest_.begin(), highest_.end()));
+  for (std::size_t i = 1; i < levels_.size(); ++i) {
+    const Level& finer = levels_[i - 1];
+    Level& level = levels_[i];
+    level.blocks = (finer.blocks + kBlocksABlock - 1) / kBlocksABlock;
+    level.block_size = static_cast<double>(kBlocksABlock) * finer.block_size;
+    level.highest.assign(level.blocks * level.blocks, std::numeric_limits<float>::lowest());
+    for (std::size_t block = 0; block < finer.highest.size(); ++block) {
+      const std::size_t row = block / finer.blocks / kBlocksABlock;
+      const std::size_t column = block % finer.blocks / kBlocksABlock;
+      float& highest = level.highest[row * level.blocks + column];
+      highest = std::max(highest, finer.highest[block]);
+    }
+  }
+  const std::vector<float>& all = levels_.back().highest;
+  top_ = static_cast<double>(*std::max_element(all.begin(), all.end()));
 }
 
 std::optional<double> RayCaster::cast(const Eigen::Vector3d& origin,
                                       const Eigen::Vector3d& direction, double max_range) const {
   constexpr double kNudge = 1e-9;  // over the border into the next block
   const double half = terrain_.half_size();
+  // Per axis the inverse of the direction; where it hardly moves, no border is ever reached.
+  std::array<double, 2> inverse{};
+  for (int axis = 0; axis < 2; ++axis) {
+    const double along = direction[axis];
+    inverse[static_cast<std::size_t>(axis)] = std::abs(along) > kNudge ? 1 / along : 1 / kNudge;
+  }
   double t = 0;
+  if (origin.z() > top_) {
+    if (direction.z() >= 0) return std::nullopt;
+    t = (top_ - origin.z()) / direction.z();
+  }
+  std::size_t coarseness = levels_.size() - 1;
   while (t < max_range) {
     const Eigen::Vector3d at = origin + t * direction;
     if (!terrain_.covers(at.x(), at.y())) return std::nullopt;
     if (at.z() > top_ && direction.z() >= 0) return std::nullopt;
+    const Level& level = levels_[coarseness];
     double leave = max_range;
-    std::size_t block[2];
-    for (int axis = 0; axis < 2; ++axis) {
-      const double place = std::max((at[axis] + half) / block_size_, 0.0);
-      block[axis] = std::min(static_cast<std::size_t>(place), blocks_ - 1);
-      const double border = static_cast<double>(block[axis] + (direction[axis] > 0 ? 1 : 0));
-      if (std::abs(direction[axis]) > kNudge) {
-        leave = std::min(leave, t + ((border - place) * block_size_) / direction[axis]);
-      }
+    std::array<std::size_t, 2> block{};
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      const double from_edge = std::max(at[static_cast<int>(axis)] + half, 0.0);
+      block[axis] =
+          std::min(static_cast<std::size_t>(from_edge / level.block_size), level.blocks - 1);
+      const double border =
+          static_cast<double>(block[axis] + (inverse[axis] > 0 ? 1 : 0)) * level.block_size;
+      leave = std::min(leave, t + (border - from_edge) * inverse[axis]);
     }
     leave = std::max(leave, t) + kNudge;
     const double lowest = std::min(at.z(), origin.z() + leave * direction.z());
-    if (lowest <= static_cast<double>(highest_[block[1] * blocks_ + block[0]])) {
+    if (lowest <= static_cast<double>(level.highest[block[1] * level.blocks + block[0]])) {
+      if (coarseness > 0) {
+        --coarseness;
+        continue;
+      }
       if (const auto hit = march(origin, direction, t, leave)) return hit;
+    } else if (coarseness + 1 < levels_.size()) {
+      ++coarseness;
     }
     t = leave;
   }
@@ -65,7 +98,7 @@ std::optional<double> RayCaster::march(const Eigen::Vector3d& origin,
     const Eigen::Vector3d at = origin + t * direction;
     return at.z() - terrain_.height(at.x(), at.y());
   };
-  const double step = 0.5 * terrain_.settings().cell;
+  const double step = terrain_.settings().cell;
   double before = from;
   double above_before = above(before);
   if (above_before <= 0) return before;

@@ -131,7 +131,7 @@ std::optional<Scene> scene_named(std::string_view name) {
 }
 
 TerrainSettings scene_terrain(Scene scene, double area, std::uint64_t seed) {
-  constexpr Range kObstaclesPerSquareMetre = {0.02, 0.08};
+  constexpr Range kObstaclesPerSquareMetre = {0.03, 0.1};
   const Recipe& recipe = recipe_of(scene);
   Random random(seed, 0x5CE);
   const double obstacles = std::max(area * kObstaclesPerSquareMetre.draw(random), 4.0);
@@ -157,7 +157,7 @@ TerrainSettings scene_terrain(Scene scene, double area, std::uint64_t seed) {
 
 TerrainSettings cloud_terrain(Scene scene, std::uint64_t seed) {
   const double edge = 2 * TerrainSettings().placed_within;
-  constexpr double kSparser = 0.6;  // a place that was worth mapping whole is less crowded
+  constexpr double kSparser = 0.5;  // a place that was worth mapping whole is less crowded
   return scene_terrain(scene, kSparser * edge * edge, seed);
 }
 

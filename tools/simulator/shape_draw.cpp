@@ -12,6 +12,8 @@ constexpr double kPi = std::numbers::pi;
 
 /// How much of a long shape's half length one end takes at most.
 constexpr double kLongestEnd = 0.6;
+constexpr double kLongestRock = 1.3;  ///< half of it, metres
+constexpr double kWidestHole = 1.3;   ///< half of it, metres
 
 }  // namespace
 
@@ -64,6 +66,7 @@ void Shape::draw_rock(Random& random) {
   double width = std::max(narrowest, size_ * random.uniform(0.45, 1.1));
   double length =
       width * (random.chance(0.25) ? random.uniform(1.6, 3.0) : random.uniform(1.0, 1.5));
+  length = std::min(length, std::max(width, kLongestRock));
   switch (kind_) {
     case ShapeKind::block:
       sharpness_ = random.uniform(0.12, 0.35);
@@ -129,6 +132,7 @@ void Shape::draw_hole(Random& random) {
       width = std::max(0.3, size_ * random.uniform(0.8, 1.6));
       longer = random.uniform(1.0, 1.5);
   }
+  if (kind_ != ShapeKind::ditch) width = std::min(width, kWidestHole);
   semi_axes_ = {width * longer, width};
 }
 

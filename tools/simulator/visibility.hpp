@@ -4,12 +4,20 @@
 #include <span>
 #include <vector>
 
+#include "scree/core/pose.hpp"
 #include "simulator/lidar.hpp"
 
 namespace scree {
 
-/// Which obstacles a sensor has seen well enough to be asked for: in one sweep at least 20 shots of
-/// at least two lasers hit the rock, or land inside the hole, more than 5 cm off the ground around.
+/// Which obstacles a sensor has seen well enough to be asked for. A shot counts when it hits a
+/// rock, or lands inside a hole, more than 5 cm off the ground around.
+///
+/// From one sweep: 20 shots of at least two lasers.
+///
+/// On a drive, all sweeps together, shots from any distance: 80 shots in at least three sweeps and,
+/// for a hole, one at 40 % of its depth or deeper, because a brink alone could be anything; and the
+/// obstacle lies now where a planner asks: its centre within 10 m of `base` and more than 0.5 m
+/// ahead of it. Stones and dents are never asked for.
 class Visibility {
 public:
   explicit Visibility(const Terrain& terrain) : terrain_(terrain) {}
@@ -19,16 +27,24 @@ public:
   /// Closes the sweep: what it showed well enough counts as seen from now on.
   void end_sweep();
 
-  std::vector<int> seen() const;      ///< ids of obstacles
-  std::vector<int> not_seen() const;  ///< ids of the other obstacles
+  std::vector<int> seen() const;      ///< obstacles that one sweep has shown well enough
+  std::vector<int> not_seen() const;  ///< all the others, stones and dents too
+
+  struct Sight {
+    std::vector<int> ids, ignore;  ///< asked for, and all the others
+  };
+  /// What a robot at this pose is asked for after the sweeps so far.
+  Sight asked_for(const Pose& base) const;
 
 private:
   struct Hits {
-    int shots = 0;
+    int shots = 0;        ///< of this sweep
     unsigned lasers = 0;  ///< one bit each
     bool seen = false;
+    int all_shots = 0, sweeps = 0;
+    float furthest = 0;  ///< above or below the ground, metres
   };
-  std::vector<int> ids(bool seen) const;
+  bool is_known(const TerrainFeature& feature) const;
 
   const Terrain& terrain_;
   std::array<Hits, Terrain::kMostFeatures + 1> hits_{};

@@ -42,6 +42,8 @@ void for_each_detect_key(std::string_view table, Detect& detect, Visit&& visit) 
       "taken at start");
   key("ground_cell", detect.ground_cell, "m", 0.01, 10,
       "edge of its cells: smaller follows the ground closer and needs denser points");
+  key("ground_points", detect.ground_points, "points", 1, 1000,
+      "least mean number of points in the cells that have any; a sparser cloud gets larger cells");
   key("ground_slope", detect.ground_slope, "m/m", 0.01, 100,
       "steeper cells are no ground: lower finds flatter obstacles and more slopes of the ground");
   key("ground_tolerance", detect.ground_tolerance, "m", 0.001, 10,

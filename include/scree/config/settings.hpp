@@ -113,8 +113,9 @@ struct DetectSettings {
 
   GroundReference ground = GroundReference::ring;
   int max_ground_cells = 1 << 19;
-  double ground_cell = 0.10;
-  double ground_slope = 0.36;
+  double ground_cell = 0.08;
+  double ground_points = 2.15;
+  double ground_slope = 0.34;
   double ground_tolerance = 0.10;
 
   Candidates candidates = Candidates::edges;

@@ -10,9 +10,10 @@
 namespace scree {
 
 struct GroundSurfaceSettings {
-  float cell_size;  ///< of the raster, metres
-  float max_slope;  ///< steeper cells are no ground, metres per metre
-  float tolerance;  ///< a smooth patch this close to the ground's surface belongs to it, metres
+  float cell_size;    ///< of the raster, metres; larger where the cloud is too sparse or too wide
+  float cell_points;  ///< least mean number of points in the cells that have any
+  float max_slope;    ///< steeper cells are no ground, metres per metre
+  float tolerance;    ///< a smooth patch this close to the ground's surface belongs to it, metres
 };
 
 /// The surface that the robot could drive on, under rocks and over holes. Cells of the plane that
@@ -24,8 +25,7 @@ class GroundSurface {
 public:
   GroundSurface(std::size_t max_points, std::size_t max_cells);
 
-  /// @pre finite points, no more than max_points of them. Where they spread over more than
-  /// max_cells, the cells are made larger.
+  /// @pre finite points, no more than max_points of them
   void build(PointView points, const GroundSurfaceSettings& settings);
 
   /// Of the last build; any place, also outside: there the nearest cell answers.
@@ -46,7 +46,8 @@ public:
 
 private:
   void lay_out(PointView points, float cell_size);
-  void gather(PointView points);
+  /// Returns the mean number of points in the cells that have any.
+  float gather(PointView points);
   void find_smooth_cells(float max_slope);
   void find_patches(float max_slope);
   void join_patches(float tolerance);

@@ -34,7 +34,7 @@ private:
   bool borders_on(std::size_t cell, std::uint8_t side, std::size_t columns) const;
 
   FixedVector<std::uint8_t> sides_;
-  FixedVector<std::uint32_t> visited_;  // number of the last cluster that counted the cell
+  FixedVector<std::uint32_t> visited_;     // number of the last cluster that counted the cell
   FixedVector<std::uint8_t> ground_seen_;  // in each quarter of a cell, row by row
   std::uint32_t number_ = 0;
 };

@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <memory>
 #include <ostream>
 #include <string_view>
 
 #include "scree/drivers/velodyne/data_packet.hpp"
+#include "simulator/body.hpp"
 
 namespace scree {
 namespace {
@@ -45,6 +47,7 @@ TEST_P(SimulatedLidarDecodes, ToTheShotsThatWereCast) {
   const auto decoded = std::make_unique<Shots>();
   const bool dual = settings.mode == ReturnMode::dual;
   int returns = 0;
+  int two_returns = 0;
   for (int packet = 0; packet < 100; ++packet) {
     lidar.advance();
     const auto bytes = lidar.data_packet();
@@ -56,10 +59,14 @@ TEST_P(SimulatedLidarDecodes, ToTheShotsThatWereCast) {
       const std::size_t cast = (dual ? block / 2 : block) * kShotsPerBlock + i % kShotsPerBlock;
       const SimulatedShot& shot = lidar.shots()[cast];
       EXPECT_EQ(decoded->time_ns[i], shot.t_ns - lidar.packet_ns());
-      ASSERT_NEAR(decoded->range[i], shot.range, 0.00101);
-      if (shot.range <= 0) continue;
+      const bool is_last = dual && block % 2 == 0;
+      const float range = is_last ? shot.last_range : shot.range;
+      ASSERT_NEAR(decoded->range[i], range, 0.00101);
+      if (range <= 0) continue;
       ++returns;
-      EXPECT_EQ(decoded->reflectivity[i], shot.reflectivity);
+      EXPECT_EQ(decoded->reflectivity[i], is_last ? shot.last_reflectivity : shot.reflectivity);
+      two_returns += is_last && shot.last_range - shot.range > 0.3F ? 1 : 0;
+      if (range != shot.range) continue;
       // Azimuths are sent in steps of 0.01 deg.
       const Eigen::Vector3d point(static_cast<double>(decoded->x[i]),
                                   static_cast<double>(decoded->y[i]),
@@ -72,6 +79,7 @@ TEST_P(SimulatedLidarDecodes, ToTheShotsThatWereCast) {
     }
   }
   EXPECT_GT(returns, 8000);
+  EXPECT_EQ(two_returns > 0, dual);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -81,6 +89,68 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"Vlp16Last20Hz", LidarModel::vlp16, ReturnMode::last, 20},
                     Case{"HiRes5Hz", LidarModel::puck_hires, ReturnMode::strongest, 5}),
     [](const testing::TestParamInfo<Case>& which) { return which.param.name; });
+
+TEST(SimulatedLidar, TruePosesMoveItsPointsOntoTheGround) {
+  TerrainSettings terrain_settings;
+  terrain_settings.size = 44;
+  terrain_settings.cell = 0.04;
+  terrain_settings.positive = terrain_settings.negative = 0;
+  const Terrain terrain(terrain_settings, 1);
+  const RayCaster caster(terrain);
+  const Motion motion = follow_ground(draw_track({4, 1.5}, 1), terrain, draw_body(1), kStart, 1);
+  const Pose mount{{0.1, 0, 0.95}, from_roll_pitch_yaw(0, radians(6), 0)};
+  SimulatedLidarSettings settings;
+  settings.laser_bias = 0.005;
+  SimulatedLidar lidar(terrain, caster, settings, motion, mount, kStart + 2'000'000'000, 1);
+  const PacketDecoder decoder(settings.model);
+  const auto decoded = std::make_unique<Shots>();
+  double squares = 0;
+  double squares_late = 0;  // with the pose of a tenth of a second later
+  int points = 0;
+  for (int packet = 0; packet < 300; ++packet) {
+    lidar.advance();
+    decoder.decode(lidar.data_packet(), *decoded);
+    for (std::size_t i = 0; i < kShots; ++i) {
+      if (decoded->range[i] <= 0 || decoded->range[i] > 8) continue;
+      const Eigen::Vector3d point(static_cast<double>(decoded->x[i]),
+                                  static_cast<double>(decoded->y[i]),
+                                  static_cast<double>(decoded->z[i]));
+      const auto off = [&](std::int64_t t_ns) {
+        const Eigen::Vector3d in_world = motion.base(t_ns) * (mount * point);
+        return in_world.z() - terrain.height(in_world.x(), in_world.y());
+      };
+      const std::int64_t t_ns = lidar.packet_ns() + decoded->time_ns[i];
+      squares += std::pow(off(t_ns), 2);
+      squares_late += std::pow(off(t_ns + 100'000'000), 2);
+      ++points;
+    }
+  }
+  ASSERT_GT(points, 10000);
+  // Range noise and bias of a centimetre, at the beam's angle to the ground.
+  EXPECT_LT(std::sqrt(squares / points), 0.005);
+  EXPECT_GT(squares_late, 2 * squares);
+}
+
+TEST(SimulatedLidar, FreeRunningClockHasItsOwnHour) {
+  TerrainSettings terrain_settings;
+  terrain_settings.size = 4;
+  terrain_settings.positive = terrain_settings.negative = terrain_settings.smooth = 0;
+  const Terrain terrain(terrain_settings, 1);
+  const RayCaster caster(terrain);
+  SimulatedLidarSettings settings;
+  settings.is_locked = false;
+  settings.clock_offset_ns = kHourNs - 120'000'000'000 - 500'000;  // wraps half a millisecond on
+  settings.clock_skew = 1e-3;
+  const Motion motion{Pose{{0, 0, 1}, Eigen::Quaterniond::Identity()}};
+  SimulatedLidar lidar(terrain, caster, settings, motion, Pose(), kStart, 1);
+  lidar.advance();
+  EXPECT_EQ(timestamp_us(lidar.data_packet()), kHourUs - 500);
+  lidar.advance();
+  EXPECT_EQ(timestamp_us(lidar.data_packet()), 1327 - 500 + 1);
+  const auto packet = lidar.position_packet();
+  EXPECT_EQ(packet[kPpsStatusOffset], 0);
+  EXPECT_EQ(packet[kNmeaOffset], 0);
+}
 
 TEST(SimulatedLidar, PositionPacketCarriesTheTimeOfDay) {
   TerrainSettings terrain_settings;

@@ -1,0 +1,179 @@
+"""scree simulate as a program, held against its own truth by readers written from the formats'
+descriptions alone: python3 simulate_test.py SCREE [TEST ...]"""
+
+import json
+import math
+import os
+import re
+import struct
+import subprocess
+import sys
+import tempfile
+import tomllib
+import unittest
+
+SCREE = sys.argv[1]
+GRAVITY = 9.81
+
+
+def serial_bytes(path):
+    """The stream of a pcap file of link type 147, and the number of its records."""
+    with open(path, "rb") as file:
+        data = file.read()
+    assert struct.unpack_from("<I", data, 20)[0] == 147
+    stream, at, records = b"", 24, 0
+    while at < len(data):
+        size = struct.unpack_from("<I", data, at + 8)[0]
+        stream += data[at + 16 : at + 16 + size]
+        at, records = at + 16 + size, records + 1
+    return stream, records
+
+
+def imu_samples(stream):
+    """MTData2 messages as dictionaries of data id to bytes; fails on anything that is no message."""
+    samples, at = [], 0
+    while at < len(stream):
+        assert stream[at : at + 2] == b"\xfa\xff", at
+        size = stream[at + 3]
+        assert sum(stream[at + 1 : at + 5 + size]) % 256 == 0, at
+        if stream[at + 2] == 0x36:
+            body, i, sample = stream[at + 4 : at + 4 + size], 0, {}
+            while i < len(body):
+                key, length = struct.unpack_from(">HB", body, i)
+                sample[key] = body[i + 3 : i + 3 + length]
+                i += 3 + length
+            samples.append(sample)
+        at += 5 + size
+    return samples
+
+
+def signal(frame, encoder):
+    """A DBC signal of a frame's eight bytes."""
+    length, start = encoder["length"], encoder["start_bit"]
+    if encoder["byte_order"] == "little_endian":
+        value = int.from_bytes(frame, "little") >> start
+    else:
+        last = 8 * (start // 8) + 7 - start % 8 + length
+        value = int.from_bytes(frame, "big") >> (64 - last)
+    value &= (1 << length) - 1
+    if encoder["signed"] and value >> (length - 1):
+        value -= 1 << length
+    return value
+
+
+def tilt_from(quaternion):
+    """The vertical in the child's axes."""
+    w, x, y, z = quaternion
+    return 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)
+
+
+class SimulateTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def simulate(self, *arguments):
+        capture = os.path.join(self.folder, "capture")
+        done = subprocess.run([SCREE, "simulate", capture, *arguments], capture_output=True, text=True,
+                              timeout=200)  # fmt: skip
+        self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)
+        with open(os.path.join(capture, "truth.json")) as file:
+            truth = json.load(file)
+        with open(os.path.join(capture, "scree.toml"), "rb") as file:
+            return capture, truth, tomllib.load(file)
+
+    def path_length(self, truth):
+        points = [pose["p"] for pose in truth["poses"]]
+        return sum(math.dist(a, b) for a, b in zip(points, points[1:]))
+
+    def test_the_independent_decoder_reads_a_drive_alike(self):
+        import compare_velodyne_decoder as reference
+
+        for arguments in (["--scene", "rough"], ["--dual", "--scene", "grass", "--rate", "20"]):
+            capture, _, _ = self.simulate("--seconds", "1", "--seed", "21", *arguments)
+            points = reference.compare(SCREE, os.path.join(capture, "lidar.pcap"))
+            self.assertGreater(points, 50_000)
+
+    def test_imu_agrees_with_the_motion(self):
+        capture, truth, config = self.simulate("--seconds", "3", "--seed", "21", "--imu-rate", "200")
+        stream, records = serial_bytes(os.path.join(capture, "imu.pcap"))
+        samples = imu_samples(stream)
+        self.assertGreater(len(samples), 590)
+        self.assertGreater(records, 590)
+        counters = [int.from_bytes(sample[0x1020], "big") for sample in samples]
+        ticks = [int.from_bytes(sample[0x1060], "big") for sample in samples]
+        for i in range(1, len(samples)):
+            self.assertEqual((counters[i] - counters[i - 1]) % 65536, 1)
+            self.assertEqual((ticks[i] - ticks[i - 1]) % 2**32, 50)
+        # Standing or driving, on average the specific force is gravity along the vertical that the
+        # orientation tells, and the rates add up to the change of heading in the truth.
+        force, vertical, turned = [0.0] * 3, [0.0] * 3, 0.0
+        for sample in samples:
+            up = tilt_from(struct.unpack(">4f", sample[0x2010]))
+            rates = struct.unpack(">3f", sample[0x8020])
+            turned += sum(a * b for a, b in zip(up, rates)) / 200
+            for axis, value in enumerate(struct.unpack(">3f", sample[0x4020])):
+                force[axis] += value / len(samples)
+                vertical[axis] += GRAVITY * up[axis] / len(samples)
+        self.assertLess(math.dist(force, vertical), 0.8)
+
+        def heading(pose):
+            w, x, y, z = pose["q"]
+            return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+
+        change = heading(truth["poses"][-1]) - heading(truth["poses"][0])
+        change = (change + math.pi) % (2 * math.pi) - math.pi
+        self.assertAlmostEqual(turned, change, delta=0.1)
+
+    def test_encoder_agrees_with_the_way(self):
+        for seed in ("21", "22", "23", "24"):
+            capture, truth, config = self.simulate("--seconds", "4", "--seed", seed, "--speed", "1")
+            encoder = config["encoder"]
+            first, last = (truth["poses"][i]["t_ns"] * 1e-9 for i in (0, -1))
+            counts, times = [], []
+            with open(os.path.join(capture, "can.log")) as file:
+                for line in file:
+                    t, frame_id, data = re.fullmatch(r"\((\d+\.\d{6})\) can0 (\w+)#(\w+)\n", line).groups()
+                    if int(frame_id, 16) == encoder["can_id"] and first <= float(t) <= last:
+                        counts.append(signal(bytes.fromhex(data), encoder))
+                        times.append(float(t))
+            self.assertGreater(len(counts), 350)
+            if encoder["kind"] == "counter":
+                wrap = 1 << encoder["length"]
+                steps = [(b - a + wrap // 2) % wrap - wrap // 2 for a, b in zip(counts, counts[1:])]
+                driven = sum(steps) * encoder["scale"]
+            else:
+                spans = [b - a for a, b in zip(times, times[1:])]
+                driven = sum(v * dt for v, dt in zip(counts[1:], spans)) * encoder["scale"]
+            way = self.path_length(truth)
+            self.assertGreater(way, 1)
+            self.assertGreater(driven, 0.96 * way - 0.03)
+            self.assertLess(driven, 1.12 * way + 0.03)
+
+    def test_every_scene_has_obstacles_in_sight(self):
+        for scene in ("easy", "rolling", "rough", "crater", "ditch", "grass", "mixed"):
+            _, truth, _ = self.simulate("--seconds", "1", "--seed", "8", "--scene", scene)
+            kinds = {obstacle["kind"] for obstacle in truth["obstacles"]}
+            self.assertEqual(kinds, {"positive", "negative"}, scene)
+            self.assertTrue(any(entry["ids"] for entry in truth["visible"]), scene)
+
+    def test_options_show_in_the_capture(self):
+        capture, truth, _ = self.simulate("--seconds", "1", "--seed", "3", "--rate", "5", "--dual",
+                                          "--pps", "--packet-loss", "0.1", "--at-rest")  # fmt: skip
+        run = subprocess.run([SCREE, "info", capture, "--json"], capture_output=True, text=True, check=True)
+        info = json.loads(run.stdout)
+        self.assertEqual(list(info["return_modes"]), ["dual"])
+        self.assertAlmostEqual(info["rpm"], 300, delta=3)
+        self.assertGreater(info["lost"], 60)
+        self.assertLess(self.path_length(truth), 1e-9)
+        self.assertEqual(len(truth["visible"]), 5)
+
+    def test_wrong_usage_exits_2(self):
+        for arguments in (["--scene", "swamp"], ["--speed", "9"], ["--rate", "50"]):
+            done = subprocess.run([SCREE, "simulate", self.folder, *arguments], capture_output=True)
+            self.assertEqual(done.returncode, 2, arguments)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1] + sys.argv[2:])

@@ -1,0 +1,111 @@
+#include "simulator/links.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <regex>
+
+namespace scree {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Record {
+  std::int64_t t_ns;
+  std::vector<std::uint8_t> bytes;
+};
+
+/// Records of a pcap file with nanosecond times, read by the format's description.
+std::vector<Record> records(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  const std::vector<char> all{std::istreambuf_iterator<char>(stream), {}};
+  const auto word = [&](std::size_t at) {
+    std::uint32_t value = 0;
+    std::memcpy(&value, all.data() + at, sizeof value);
+    return value;
+  };
+  EXPECT_EQ(word(0), 0xA1B23C4DU);
+  EXPECT_EQ(word(20), 147U);
+  std::vector<Record> records;
+  for (std::size_t at = 24; at + 16 <= all.size(); at += 16 + word(at + 8)) {
+    const auto begin = all.begin() + static_cast<std::ptrdiff_t>(at) + 16;
+    records.push_back({word(at) * 1'000'000'000LL + word(at + 4), {begin, begin + word(at + 8)}});
+  }
+  return records;
+}
+
+class Serial : public testing::TestWithParam<std::int64_t> {};
+
+TEST_P(Serial, KeepsAllBytesInOrderWhateverTheReads) {
+  const fs::path file = fs::path(testing::TempDir()) / "scree_serial_test.pcap";
+  auto pcap = PcapWriter::create_serial(file);
+  ASSERT_TRUE(pcap);
+  SerialPort port(*pcap, 921600, GetParam(), 1);
+  std::vector<std::uint8_t> sent;
+  constexpr int kMessages = 300;
+  constexpr std::size_t kSize = 73;
+  for (int i = 0; i < kMessages; ++i) {
+    std::vector<std::uint8_t> message(kSize, static_cast<std::uint8_t>(i));
+    sent.insert(sent.end(), message.begin(), message.end());
+    port.send(1'000'000'000LL + i * 2'500'000LL, message);
+  }
+  port.finish();
+  ASSERT_TRUE(pcap->close());
+  std::vector<std::uint8_t> received;
+  std::int64_t before = 0;
+  int split = 0;
+  int joined = 0;
+  for (const Record& record : records(file)) {
+    EXPECT_GT(record.t_ns, before);
+    before = record.t_ns;
+    // No byte before it was sent.
+    const auto last =
+        static_cast<std::int64_t>((received.size() + record.bytes.size() - 1) / kSize);
+    EXPECT_GT(record.t_ns, 1'000'000'000LL + last * 2'500'000LL);
+    split += record.bytes.size() < kSize ? 1 : 0;
+    joined += record.bytes.size() > kSize ? 1 : 0;
+    received.insert(received.end(), record.bytes.begin(), record.bytes.end());
+  }
+  EXPECT_EQ(received, sent);
+  if (GetParam() == 0) {
+    EXPECT_GT(split, 20);
+  } else {
+    EXPECT_GT(joined, 20);
+  }
+  fs::remove(file);
+}
+
+INSTANTIATE_TEST_SUITE_P(Reads, Serial, testing::Values(0, 16'000'000),
+                         [](const auto& which) { return which.param == 0 ? "Soon" : "InBursts"; });
+
+TEST(CanBus, LogsAsCandumpDoes) {
+  const fs::path file = fs::path(testing::TempDir()) / "scree_can_test.log";
+  EncoderSettings layout;
+  layout.can_id = 0x18FF50E5;
+  const Motion motion{Pose()};
+  SimulatedEncoder encoder(motion, layout, {}, 1);
+  CanBus bus(file, layout, 1);
+  bus.start(1'598'601'600'000'000'000, 100);
+  bus.run_until(1'598'601'601'000'000'000, encoder);
+  ASSERT_TRUE(bus.close());
+  std::ifstream stream(file);
+  const std::regex form(R"(\(\d{10}\.\d{6}\) can0 ([0-9A-F]{3}|[0-9A-F]{8})#[0-9A-F]{16})");
+  int encoders = 0;
+  int all = 0;
+  double before = 0;
+  for (std::string line; std::getline(stream, line); ++all) {
+    EXPECT_TRUE(std::regex_match(line, form)) << line;
+    encoders += line.find(" 18FF50E5#") != std::string::npos ? 1 : 0;
+    const double t = std::stod(line.substr(1));
+    EXPECT_GT(t, before);
+    before = t;
+  }
+  EXPECT_EQ(encoders, 101);
+  EXPECT_GT(all, encoders);
+  fs::remove(file);
+}
+
+}  // namespace
+}  // namespace scree

@@ -1,0 +1,120 @@
+#include "simulator/track.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "scree/core/random.hpp"
+
+namespace scree {
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+constexpr double kStep = static_cast<double>(kTrackStepNs) * 1e-9;
+
+double smooth(double t) {
+  const double x = std::clamp(t, 0.0, 1.0);
+  return x * x * x * (x * (x * 6 - 15) + 10);
+}
+
+/// Smooth random function, about -1..1.
+class Waves {
+public:
+  Waves(Random& random, double shortest, double longest) {
+    for (Wave& wave : waves_) {
+      wave = {kTurn / random.uniform(shortest, longest), random.uniform(0, kTurn)};
+    }
+  }
+  double operator()(double x) const {
+    double sum = 0;
+    for (const Wave& wave : waves_) sum += std::sin(wave.rate * x + wave.phase);
+    return sum / static_cast<double>(waves_.size());
+  }
+
+private:
+  struct Wave {
+    double rate, phase;
+  };
+  std::array<Wave, 3> waves_{};
+};
+
+/// Speed over time: stands, drives off, may stop once.
+class SpeedProfile {
+public:
+  SpeedProfile(const TrackSettings& settings, Random& random)
+      : mean_(settings.speed > 0 ? settings.speed : random.uniform(0.4, 1.6)),
+        variation_(random.uniform(0.1, 0.45)),
+        waves_(random, 5, 16),
+        stands_(std::min(random.uniform(0, 2.2), 0.1 * settings.seconds)),
+        drives_off_(random.uniform(0.8, 2.0)) {
+    const bool stops = settings.seconds > 12 && random.chance(0.25);
+    const double at = random.uniform(0.4, 0.8) * settings.seconds;
+    if (stops) stop_ = at;
+  }
+
+  double operator()(double t) const {
+    constexpr double kBraking = 1.2;  // seconds
+    constexpr double kStopped = 1.0;
+    const double wanted = std::clamp(mean_ * (1 + variation_ * waves_(t)), 0.3, 2.0);
+    const double away = std::abs(t - stop_) - kStopped / 2;
+    const double going = std::min(smooth((t - stands_) / drives_off_), smooth(away / kBraking));
+    return wanted * going;
+  }
+
+private:
+  double mean_, variation_;
+  Waves waves_;
+  double stands_, drives_off_;
+  double stop_ = -1e9;
+};
+
+}  // namespace
+
+std::vector<TrackPoint> draw_track(const TrackSettings& settings, std::uint64_t seed) {
+  constexpr double kArena = 9;          // metres; beyond it the robot turns back
+  constexpr double kMostTurning = 0.6;  // rad/s
+  Random random(seed, 0x7AC4);
+  const SpeedProfile speed_at(settings, random);
+  const Waves bends(random, 4, 16);
+  const double sharpest = random.uniform(0.1, 0.4);
+  const auto points = static_cast<std::size_t>(std::ceil(settings.seconds / kStep)) + 1;
+  std::vector<TrackPoint> track(points);
+  track[0].yaw = random.uniform(-std::numbers::pi, std::numbers::pi);
+  track[0].position = {random.uniform(-3, 3), random.uniform(-3, 3)};
+  double driven = 0;
+  double curvature = sharpest * bends(0);
+  for (std::size_t i = 0; i + 1 < points; ++i) {
+    TrackPoint& here = track[i];
+    here.speed = speed_at(static_cast<double>(i) * kStep);
+    double wanted = sharpest * bends(driven);
+    if (here.position.norm() > kArena) {
+      const double home = std::atan2(-here.position.y(), -here.position.x());
+      wanted += 0.35 * std::sin(home - here.yaw) * smooth((here.position.norm() - kArena) / 3);
+      if (std::cos(home - here.yaw) < 0) wanted = std::copysign(0.4, std::sin(home - here.yaw));
+    }
+    const double most = kMostTurning / std::max(here.speed, 0.3);
+    curvature += (std::clamp(wanted, -most, most) - curvature) * kStep / 0.5;
+    const double moved = here.speed * kStep;
+    driven += moved;
+    track[i + 1].yaw = here.yaw + moved * curvature;
+    const double heading = here.yaw + moved * curvature / 2;
+    track[i + 1].position =
+        here.position + moved * Eigen::Vector2d(std::cos(heading), std::sin(heading));
+  }
+  track.back().speed = speed_at(static_cast<double>(points - 1) * kStep);
+  return track;
+}
+
+std::vector<Eigen::Vector2d> thinned(const std::vector<TrackPoint>& track) {
+  constexpr double kApart = 0.25;
+  std::vector<Eigen::Vector2d> points;
+  for (const TrackPoint& point : track) {
+    if (points.empty() || (point.position - points.back()).norm() >= kApart) {
+      points.push_back(point.position);
+    }
+  }
+  return points;
+}
+
+}  // namespace scree

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+namespace scree {
+
+/// Where a robot drives, seen from above, at one moment.
+struct TrackPoint {
+  Eigen::Vector2d position;  ///< metres
+  double yaw = 0;            ///< radians, of the way it drives
+  double speed = 0;          ///< m/s, never below zero
+};
+
+struct TrackSettings {
+  double seconds = 20;
+  double speed = 0;  ///< mean speed while driving, m/s; 0: drawn from 0.4 to 1.6
+};
+
+inline constexpr std::int64_t kTrackStepNs = 2'500'000;
+
+/// A smooth curved way, a point each kTrackStepNs: it may stand at first and stop on the way,
+/// drives at 0.3 to 2 m/s that vary smoothly, turns at up to 0.6 rad/s and stays within about 12 m
+/// of the origin. The same seed gives the same way.
+std::vector<TrackPoint> draw_track(const TrackSettings& settings, std::uint64_t seed);
+
+/// Points along the way about 0.25 m apart.
+std::vector<Eigen::Vector2d> thinned(const std::vector<TrackPoint>& track);
+
+}  // namespace scree
