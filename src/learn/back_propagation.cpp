@@ -12,7 +12,9 @@ VectorXd gradient(const Network& network, std::span<const Sample> samples) {
   VectorXd sum = VectorXd::Zero(static_cast<Eigen::Index>(network.weights().size()));
   for (std::size_t begin = 0; begin < samples.size(); begin += kBlock) {
     const auto block = samples.subspan(begin, std::min(kBlock, samples.size() - begin));
-    sum.noalias() += jacobian(network, block).transpose() * errors(network, block);
+    const Eigen::MatrixXd j = jacobian(network, block);
+    const VectorXd e = errors(network, block);
+    for (Eigen::Index w = 0; w < j.cols(); ++w) sum[w] += j.col(w).dot(e);
   }
   const double terms = static_cast<double>(samples.size() * Network::kOutputs);
   return samples.empty() ? sum : VectorXd(2 / terms * sum);

@@ -95,6 +95,13 @@ Detector detector_of(const DetectSettings& settings, const StudyTask& task) {
   return *std::move(detector);
 }
 
+std::vector<Detector> detectors_of(const std::vector<Way>& ways, const StudyTask& task) {
+  std::vector<Detector> detectors;
+  detectors.reserve(ways.size());
+  for (const Way& way : ways) detectors.push_back(detector_of(way.detect, task));
+  return detectors;
+}
+
 ObstacleList list_of(Detector& detector, PointView cloud, const DetectSettings& settings) {
   ObstacleList list(static_cast<std::size_t>(settings.max_obstacles));
   detector.detect(cloud, list.obstacles);
@@ -119,6 +126,7 @@ void add_study(CLI::App& app) {
   auto options = std::make_shared<Options>();
   command->footer("Studies:" + listing());
   std::vector<std::string> names;
+  names.reserve(kStudies.size());
   for (const Study& study : kStudies) names.emplace_back(study.name);
   command->add_option("NAME", options->name, "see below")->required()->check(CLI::IsMember(names));
   command->add_option("--out", options->out, "folder for table and picture")->required();

@@ -45,6 +45,7 @@ struct CloudWorld {
 
 /// A detector for these settings with the weights that they name. Throws Failure.
 Detector detector_of(const DetectSettings& settings, const StudyTask& task);
+std::vector<Detector> detectors_of(const std::vector<Way>& ways, const StudyTask& task);
 /// Its answer to a cloud.
 ObstacleList list_of(Detector& detector, PointView cloud, const DetectSettings& settings);
 

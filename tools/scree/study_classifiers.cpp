@@ -46,8 +46,7 @@ struct Samples {
 
 /// Clusters of the same clouds for each way.
 std::vector<Samples> gather(const std::vector<Way>& ways, const StudyTask& task) {
-  std::vector<Detector> detectors;
-  for (const Way& way : ways) detectors.push_back(detector_of(way.detect, task));
+  std::vector<Detector> detectors = detectors_of(ways, task);
   std::vector<Samples> all(ways.size());
   const auto each_cloud = [&](const TerrainSettings& settings, std::size_t points, SeedRange seeds,
                               const std::string& what, auto&& take) {

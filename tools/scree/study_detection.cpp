@@ -46,8 +46,7 @@ struct CloudScores {
 };
 
 std::vector<CloudScores> score_clouds(const std::vector<Way>& ways, const StudyTask& task) {
-  std::vector<Detector> detectors;
-  for (const Way& way : ways) detectors.push_back(detector_of(way.detect, task));
+  std::vector<Detector> detectors = detectors_of(ways, task);
   std::vector<CloudScores> scores(ways.size());
   Progress progress("clouds", task.seeds.count);
   for (std::size_t i = 0; i < task.seeds.count; ++i) {

@@ -102,7 +102,8 @@ void GroundView::label(double x, double y, const std::string& text, Colour colou
   for (int attempt = 0; attempt < 64; ++attempt) {
     // All round, further and further away.
     const double angle = attempt * std::numbers::pi / 4;
-    const double away = 8 + 10.0 * (attempt / 8);
+    const int ring = attempt / 8;
+    const double away = 8 + 10.0 * ring;
     place = {across(y) + std::cos(angle) * (away + width / 2) - width / 2,
              down(x) - std::sin(angle) * (away + kSize / 2) - kSize / 2, width, kSize};
     const bool is_free =
