@@ -29,6 +29,13 @@ float common_reach(const DetectSettings& settings, const ElevationGradient& grad
 
 }  // namespace
 
+GroundSurfaceSettings surface_settings(const DetectSettings& settings) {
+  return {.cell_size = static_cast<float>(settings.ground_cell),
+          .cell_points = static_cast<float>(settings.ground_points),
+          .max_slope = static_cast<float>(settings.ground_slope),
+          .tolerance = static_cast<float>(settings.ground_tolerance)};
+}
+
 Detector::Detector(const DetectSettings& settings, Network network)
     : settings_(settings),
       network_(std::move(network)),
@@ -95,10 +102,7 @@ void Detector::choose_candidates() {
   is_candidate_.assign(points.size(), 1);
   height_.assign(points.size(), 0);
   if (!settings_.uses_surface()) return;
-  surface_.build(points, {.cell_size = static_cast<float>(settings_.ground_cell),
-                          .cell_points = static_cast<float>(settings_.ground_points),
-                          .max_slope = static_cast<float>(settings_.ground_slope),
-                          .tolerance = static_cast<float>(settings_.ground_tolerance)});
+  surface_.build(points, surface_settings(settings_));
   const auto least = static_cast<float>(settings_.body_height);
   for (std::size_t i = 0; i < points.size(); ++i) {
     height_[i] = points.z[i] - surface_.height(points.x[i], points.y[i]);

@@ -1,4 +1,5 @@
-// Each stage of the paper and the whole chain on a simulated cloud as large as the paper's.
+// The whole chain by both methods, and each of their stages, on a simulated cloud as large as the
+// paper's.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -47,14 +48,15 @@ ElevationGradient gradient() {
           detect.kernel_neighbours};
 }
 
-void whole_chain(benchmark::State& state) {
-  Detector detector(settings(), Network());
+void whole_chain(benchmark::State& state, const DetectSettings& method) {
+  Detector detector(method, Network());
   FixedVector<Obstacle> obstacles(1024);
   const PointCloud& input = cloud();
   for (auto _ : state) detector.detect(input, obstacles);
   state.counters["points"] = static_cast<double>(input.size());
 }
-BENCHMARK(whole_chain)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(whole_chain, paper, DetectSettings::for_paper())->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(whole_chain, bodies, DetectSettings::for_cloud())->Unit(benchmark::kMillisecond);
 
 void voxel_grid(benchmark::State& state) {
   VoxelGrid grid(max_points());
@@ -110,6 +112,14 @@ void euclidean_baseline(benchmark::State& state) {
   for (auto _ : state) stage.cluster(kept.points, 0.15F);
 }
 BENCHMARK(euclidean_baseline)->Unit(benchmark::kMillisecond);
+
+void ground_surface(benchmark::State& state) {
+  const DetectSettings ours = DetectSettings::for_cloud();
+  GroundSurface surface(max_points(), static_cast<std::size_t>(ours.max_ground_cells));
+  const PointCloud& points = ran().cells().points();
+  for (auto _ : state) surface.build(points, surface_settings(ours));
+}
+BENCHMARK(ground_surface)->Unit(benchmark::kMillisecond);
 
 void features_and_ground(benchmark::State& state) {
   const Detector& detector = ran();

@@ -23,6 +23,8 @@ public:
       const double area = area_of(cell);
       const double wall = settings.wall_density + (1 - settings.wall_density) / area;
       weight_[cell] = area * wall;
+      const double away = std::min(middle_of(cell).norm() / terrain.half_size(), 1.0);
+      weight_[cell] *= std::pow(settings.rim_density, away);
       if (settings.density_spread == 1) continue;
       const Eigen::Vector2d at = middle_of(cell);
       const double share = std::clamp(looked_at(at.x(), at.y()), -0.5, 0.5);

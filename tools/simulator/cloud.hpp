@@ -13,7 +13,9 @@ struct CloudSettings {
   double noise = 0.01;              ///< standard deviation of each coordinate, metres
   double scattered_share = 0.0005;  ///< points that belong to nothing: dust, wrong matches
   double density_spread =
-      3;  ///< points a square metre where the robot looked most, over where least
+      3;                   ///< points a square metre where the robot looked most, over where least
+  double rim_density = 1;  ///< points a square metre at the rim of the terrain over the middle's,
+                           ///< as where the robot stayed there
   double wall_density = 0.6;  ///< of a vertical wall's area, over that of level ground
   double ghosting =
       0.01;  ///< standard deviation of a pass's registration error, metres: three

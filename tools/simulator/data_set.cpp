@@ -1,6 +1,7 @@
 #include "simulator/data_set.hpp"
 
 #include <array>
+#include <cmath>
 
 #include "scree/app/pipeline.hpp"
 #include "simulator/lidar.hpp"
@@ -28,6 +29,7 @@ CloudSettings varied_cloud(std::uint64_t seed) {
   cloud.noise = random.uniform(0.004, 0.018);
   cloud.scattered_share = random.uniform(0, 0.001);
   cloud.density_spread = random.uniform(1, 4);
+  if (random.chance(0.4)) cloud.rim_density = std::exp(random.uniform(-7, 0));
   cloud.wall_density = random.uniform(0.2, 1);
   cloud.ghosting = random.uniform(0, 0.015);
   return cloud;
@@ -58,6 +60,18 @@ private:
   FixedVector<Obstacle> unused_;
 };
 
+/// The scenes in turn, with the robot at rest in their middle.
+TerrainSettings around_the_robot(std::uint64_t seed) {
+  const TerrainSettings around = scene_terrain();
+  TerrainSettings settings = scene_terrain(kScenes[seed % kScenes.size()],
+                                           4 * around.placed_within * around.placed_within, seed);
+  settings.placed_within = around.placed_within;
+  settings.clear_radius = around.clear_radius;
+  settings.level_radius = around.level_radius;
+  settings.size = 2 * (settings.placed_within + 6);
+  return settings;
+}
+
 class FromSweeps {
 public:
   explicit FromSweeps(const Settings& settings)
@@ -70,9 +84,7 @@ public:
   LabelledClusters operator()(std::uint64_t seed) {
     constexpr std::array kRates = {5.0, 10.0, 10.0, 20.0};
     lidar_.rate_hz = kRates[Random(seed).index(kRates.size())];
-    TerrainSettings settings = scene_terrain();
-    settings.size = 2 * (settings.placed_within + 6);
-    const Terrain terrain(settings, seed);
+    const Terrain terrain(around_the_robot(seed), seed);
     const RayCaster caster(terrain);
     SimulatedLidar lidar(terrain, caster, lidar_, mount_, 0, seed);
     Visibility visibility(terrain);

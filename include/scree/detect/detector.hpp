@@ -40,8 +40,11 @@ struct StageCounts {
   std::size_t obstacles_dropped = 0;  ///< beyond max_obstacles
 };
 
-/// The method of the paper on one point cloud. Memory is taken once, here; detect() allocates
-/// nothing, and gives the same result for the same cloud.
+/// What the ground's surface takes of the detector's settings.
+GroundSurfaceSettings surface_settings(const DetectSettings& settings);
+
+/// The method of the paper on one point cloud, or ours that grew from it (Candidates). Memory is
+/// taken once, here; detect() allocates nothing, and gives the same result for the same cloud.
 class Detector {
 public:
   Detector(const DetectSettings& settings, Network network);

@@ -71,6 +71,24 @@ TEST(Settings, DefaultFileReadsBackAndIsStable) {
   ASSERT_TRUE(settings) << settings.error().message;
 }
 
+TEST(Settings, ShippedPaperFileIsThePapersMethod) {
+  const auto settings = load_settings(std::string(SCREE_SOURCE) + "/config/paper.toml");
+  ASSERT_TRUE(settings) << settings.error().message;
+  const auto text_of = [](DetectSettings detect) {
+    std::ostringstream text;
+    for_each_detect_key("detect.cloud", detect, [&](const Key& key, const auto& value) {
+      text << key.name << ' ';
+      if constexpr (std::is_enum_v<std::decay_t<decltype(value)>>) {
+        text << name_of(value) << '\n';
+      } else {
+        text << value << '\n';
+      }
+    });
+    return text.str();
+  };
+  EXPECT_EQ(text_of(settings->detect_cloud), text_of(DetectSettings::for_paper()));
+}
+
 /// The shipped file is this very text; SCREE_UPDATE=1 in the environment writes it anew.
 TEST(Settings, ShippedFileIsTheDefaults) {
   const std::string shipped = std::string(SCREE_SOURCE) + "/config/scree.toml";
