@@ -65,14 +65,18 @@ void Surroundings::measure(Cluster& cluster, std::span<const std::uint32_t> memb
     ++cells;
     if (borders_on(cell, edges.height[i] > 0 ? below : above, surface.columns())) ++rim;
   }
-  float inside = 0, unseen = 0;
+  constexpr float kAround = 0.3F;
+  float inside = 0, unseen = 0, around = 0, ground = 0;
   const OrientedBox& box = cluster.box;
-  const float reach = std::hypot(box.length, box.width) / 2, step = surface.cell_size();
+  const float reach = std::hypot(box.length, box.width) / 2 + kAround, step = surface.cell_size();
   for (float y = box.center_y - reach; y <= box.center_y + reach; y += step) {
     for (float x = box.center_x - reach; x <= box.center_x + reach; x += step) {
-      if (box.distance(x, y) > 0) continue;
-      ++inside;
-      if (surface.points_in(surface.cell_at(x, y)) == 0) ++unseen;
+      const float distance = box.distance(x, y);
+      if (distance > kAround) continue;
+      const std::size_t cell = surface.cell_at(x, y);
+      ++(distance > 0 ? around : inside);
+      if (distance > 0 && surface.is_ground(cell)) ++ground;
+      if (distance <= 0 && surface.points_in(cell) == 0) ++unseen;
     }
   }
   Features& features = cluster.features;
@@ -81,6 +85,7 @@ void Surroundings::measure(Cluster& cluster, std::span<const std::uint32_t> memb
   features[steepness] = static_cast<float>(slopes / static_cast<double>(members.size()));
   features[rim_share] = rim / cells;
   features[unseen_share] = unseen / std::max(inside, 1.0F);
+  features[ground_share] = ground / std::max(around, 1.0F);
   features[through_share] = through / static_cast<float>(members.size());
 }
 

@@ -20,6 +20,7 @@ enum Feature : std::size_t {
   rim_share,      ///< of its cells: next to something on the other side of the ground
   unseen_share,   ///< of the cells of its box: without a point
   through_share,  ///< of its points: with ground seen on all sides of it; tufts let light through
+  ground_share,   ///< of the cells up to 0.3 m around its box: known to be ground
   kFeatures
 };
 inline constexpr std::size_t kPaperFeatures = 5;

@@ -29,11 +29,12 @@ public:
   void build(PointView points, const GroundSurfaceSettings& settings);
 
   /// Of the last build; any place, also outside: there the nearest cell answers.
-  bool is_ground(float x, float y) const { return ground_[cell_at(x, y)] != 0; }
+  bool is_ground(float x, float y) const { return is_ground(cell_at(x, y)); }
   /// z of the surface, bilinear, metres.
   float height(float x, float y) const;
 
   // The raster, row by row, for those who walk over it.
+  bool is_ground(std::size_t cell) const { return ground_[cell] != 0; }
   std::size_t columns() const { return columns_; }
   std::size_t rows() const { return rows_; }
   float cell_size() const { return cell_; }

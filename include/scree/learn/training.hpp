@@ -10,8 +10,8 @@ namespace scree {
 struct TrainingSettings {
   std::size_t hidden = 8;
   std::size_t inputs = kFeatures;  ///< the first of the features; kPaperFeatures: F1-F5
-  std::size_t restarts = 5;  ///< from different weights, against local minima
-  std::uint64_t seed = 1;    ///< of the first weights
+  std::size_t restarts = 5;        ///< from different weights, against local minima
+  std::uint64_t seed = 1;          ///< of the first weights
   Network::Forms forms = Network::kDefaultForms;
   LevenbergMarquardtSettings levenberg_marquardt;
 };

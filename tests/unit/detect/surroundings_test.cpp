@@ -62,6 +62,7 @@ TEST(Surroundings, MeasuresTheBoxAndTheSlope) {
   EXPECT_NEAR(rock[max_height], 0.4, 0.02);
   EXPECT_GT(rock[steepness], 0.3);
   EXPECT_LT(rock[unseen_share], 0.05);
+  EXPECT_GT(rock[ground_share], 0.6);
   EXPECT_EQ(rock[rim_share], 0);
 }
 
