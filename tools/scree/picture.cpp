@@ -1,5 +1,6 @@
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -22,8 +23,9 @@ struct Options {
 };
 
 struct Ground {
-  PointCloud points;  // `base` frame
-  std::string what;   // for the subtitle
+  PointCloud points;          // `base` frame
+  std::string what;           // for the subtitle
+  std::int64_t stamp_ns = 0;  // of the sweep
 };
 
 std::string time_of_day(std::int64_t stamp_ns) {
@@ -32,43 +34,37 @@ std::string time_of_day(std::int64_t stamp_ns) {
                      milliseconds / 60'000 % 60, milliseconds / 1000 % 60, milliseconds % 1000);
 }
 
-/// The sweep that a list was computed from; for a list of a live daemon, whose times are other
-/// ones, the last whole sweep of the capture. The very last may be a part of a turn: the fuller of
-/// the last two is whole.
+/// The last whole sweep of a capture. The very last may be a part of a turn: the fuller of the last
+/// two is whole.
 class SweepChoice {
 public:
-  explicit SweepChoice(std::int64_t list_stamp_ns) : wanted_ns_(list_stamp_ns) {}
-
   void take(Sweep& sweep) {
-    if (is_found_) return;
-    is_found_ = sweep.end_ns == wanted_ns_;
     std::swap(last_, before_last_);
     std::swap(last_, sweep);
   }
   const Sweep& chosen() const {
-    return is_found_ || last_.points.size() >= before_last_.points.size() ? last_ : before_last_;
+    return last_.points.size() >= before_last_.points.size() ? last_ : before_last_;
   }
 
 private:
-  std::int64_t wanted_ns_;
-  bool is_found_ = false;
   Sweep last_{velodyne::kSweepCapacity}, before_last_{velodyne::kSweepCapacity};
 };
 
 /// A sweep of the capture as the detector gets it.
-Ground ground_of_capture(const Options& options, std::int64_t list_stamp_ns) {
+Ground ground_of_capture(const Options& options) {
   const Settings settings = capture_settings(options.input, options.config);
   const auto config = settings_file(options.input, options.config);
   auto pipeline = Pipeline::make(settings, config ? config->parent_path() : "");
   if (!pipeline) throw Failure(pipeline.error().message);
-  SweepChoice choice(list_stamp_ns);
+  SweepChoice choice;
   velodyne::LidarStream stream(settings.lidar, [&](Sweep& sweep) { choice.take(sweep); });
   LidarCapture capture(options.input, settings);
   capture.play(stream);
   report_capture(capture, stream);
   pipeline->process(choice.chosen());
   const PointCloud& ground = pipeline->ground();
-  Ground copy{PointCloud(ground.size()), "one sweep, " + time_of_day(choice.chosen().end_ns)};
+  Ground copy{PointCloud(ground.size()), "one sweep, " + time_of_day(choice.chosen().end_ns),
+              choice.chosen().end_ns};
   for (std::size_t i = 0; i < ground.size(); ++i) {
     copy.points.push_back(ground.x[i], ground.y[i], ground.z[i], ground.reflectivity[i]);
   }
@@ -78,7 +74,7 @@ Ground ground_of_capture(const Options& options, std::int64_t list_stamp_ns) {
 Ground ground_of_cloud(const Options& options) {
   auto cloud = read_pcd(options.input);
   if (!cloud) throw Failure(cloud.error().message);
-  return {std::move(*cloud), "one point cloud"};
+  return {std::move(*cloud), "one point cloud", 0};
 }
 
 /// The obstacles of a list in `base`.
@@ -94,15 +90,22 @@ FixedVector<Obstacle> in_base(const ObstacleList& list) {
   return obstacles;
 }
 
+/// The list of this sweep; the last one where the lists are a live daemon's, whose times are
+/// others.
+const ObstacleList& list_of(const std::vector<ObstacleList>& lists, std::int64_t stamp_ns) {
+  const auto found = std::ranges::find(lists, stamp_ns, &ObstacleList::stamp_ns);
+  return found != lists.end() ? *found : lists.back();
+}
+
 void picture(const Options& options) {
   const auto lists = read_detections(options.detections);
   if (lists.empty()) throw Failure(options.detections + " holds no obstacle list");
   const bool is_cloud = std::filesystem::path(options.input).extension() == ".pcd";
-  const Ground ground =
-      is_cloud ? ground_of_cloud(options) : ground_of_capture(options, lists.back().stamp_ns);
+  const Ground ground = is_cloud ? ground_of_cloud(options) : ground_of_capture(options);
   const std::string title =
       "Obstacles of " + std::filesystem::path(options.input).lexically_normal().filename().string();
-  Drawing drawing = draw_top_view(ground.points, in_base(lists.back()), title, ground.what);
+  Drawing drawing =
+      draw_top_view(ground.points, in_base(list_of(lists, ground.stamp_ns)), title, ground.what);
   drawing.write_png(options.out);
 }
 
@@ -110,12 +113,13 @@ void picture(const Options& options) {
 
 void add_picture(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
-      "picture", "Draw the last sweep of a capture, or a cloud, with its obstacles from above");
+      "picture",
+      "Draw the last whole sweep of a capture, or a cloud, with its obstacles from above");
   auto options = std::make_shared<Options>();
   command->add_option("input", options->input, "capture or .pcd file")
       ->required()
       ->type_name("INPUT");
-  command->add_option("detections", options->detections, "its obstacle lists; the last is drawn")
+  command->add_option("detections", options->detections, "its obstacle lists")
       ->required()
       ->type_name("DETECTIONS.jsonl");
   command->add_option("--out", options->out, "picture to write")->required()->type_name("FILE.png");
