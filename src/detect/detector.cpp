@@ -77,7 +77,7 @@ void Detector::detect(PointView cloud, FixedVector<Obstacle>& obstacles) {
   thin(cloud);
   choose_candidates();
   find_edges();
-  if (settings_.suppression) suppression_.suppress(edges_, edge_cells_, kept_);
+  thin_edges();
   find_clusters();
   measure_clusters();
   recognise(obstacles);
@@ -136,6 +136,27 @@ void Detector::find_edges() {
   }
 }
 
+void Detector::thin_edges() {
+  if (settings_.suppression) {
+    suppression_.suppress(edges_, edge_cells_, kept_);
+  } else if (settings_.candidates == Candidates::bodies) {
+    keep_company();
+  }
+}
+
+/// Leaves out points that float alone: dust and wrong matches would stretch the body below them.
+void Detector::keep_company() {
+  constexpr float kReach = 1.5F;  // in units of the clusters' tolerance
+  euclidean_.cluster(edges_.points, kReach * static_cast<float>(settings_.cluster_tolerance));
+  sizes_.assign(euclidean_.count(), 0);
+  for (const std::uint32_t label : euclidean_.labels()) ++sizes_[label];
+  kept_.clear();
+  for (std::size_t i = 0; i < edges_.size(); ++i) {
+    if (sizes_[euclidean_.labels()[i]] < 2) continue;
+    kept_.push_back(edges_.points, i, edges_.slope_x[i], edges_.slope_y[i], edges_.height[i]);
+  }
+}
+
 /// With a gap opened between what stands above the ground and what lies below it, so that a hole
 /// and the rock on its rim never grow together.
 const EdgePoints& Detector::parted() {
@@ -183,7 +204,7 @@ void Detector::find_clusters() {
 }
 
 void Detector::measure_clusters() {
-  EdgePoints& edges = settings_.suppression ? kept_ : edges_;
+  EdgePoints& edges = thins_edges() ? kept_ : edges_;
   if (settings_.uses_surface()) surroundings_.build(cells_.points(), height_, edges, surface_);
   for (Cluster& cluster : clusters_.all()) {
     const auto members = clusters_.members(cluster);

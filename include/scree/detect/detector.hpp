@@ -32,7 +32,7 @@ struct StageCounts {
   std::size_t known = 0;              ///< with a gradient
   std::size_t edges = 0;              ///< steeper than the threshold
   std::size_t edges_dropped = 0;      ///< beyond max_edge_points
-  std::size_t kept = 0;               ///< after suppression
+  std::size_t kept = 0;               ///< after suppression, or without bodies' lone points
   std::size_t blocks = 0;             ///< super-voxels
   std::size_t blocks_kept = 0;        ///< of enough points
   std::size_t clusters = 0;           ///< of enough super-voxels
@@ -62,7 +62,7 @@ public:
   std::span<const float> slope_y() const { return slope_y_; }
   const GroundSurface& surface() const { return surface_; }
   const EdgePoints& edges() const { return edges_; }
-  const EdgePoints& kept() const { return settings_.suppression ? kept_ : edges_; }
+  const EdgePoints& kept() const { return thins_edges() ? kept_ : edges_; }
   const Supervoxels& supervoxels() const { return supervoxels_; }
   bool uses_supervoxels() const { return settings_.cluster_method == ClusterMethod::supervoxel; }
   const Clusters& clusters() const { return clusters_; }
@@ -71,6 +71,11 @@ private:
   void thin(PointView cloud);
   void choose_candidates();
   void find_edges();
+  bool thins_edges() const {
+    return settings_.suppression || settings_.candidates == Candidates::bodies;
+  }
+  void thin_edges();
+  void keep_company();
   const EdgePoints& parted();
   void find_clusters();
   void measure_clusters();

@@ -209,6 +209,38 @@ TEST_P(EachMethod, PassesUnderWhatHangsHighAboveTheGround) {
             detect(covered, settings).counts.voxels);
 }
 
+TEST(BodiesMethod, PointsThatFloatAloneDoNotStretchTheRockBelow) {
+  PointCloud cloud = test::bump_and_bowl(50'000);
+  const DetectSettings settings = small(DetectSettings::for_cloud());
+  const Found clean = run(cloud, settings);
+  PointCloud dusty(60'000);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    dusty.push_back(cloud.x[i], cloud.y[i], cloud.z[i], 0);
+  }
+  dusty.push_back(test::kBumpX, 0, test::kRoundHeight + 1, 0);
+  dusty.push_back(test::kBowlX, 0, -test::kRoundHeight - 1, 0);
+  const Found found = run(dusty, settings);
+  ASSERT_EQ(found.obstacles.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_NEAR(found.obstacles[i].height, clean.obstacles[i].height, 0.02);
+  }
+}
+
+TEST(BodiesMethod, RocksAHandApartStayTwo) {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<float> place(-4, 4);
+  PointCloud cloud(50'000);
+  while (cloud.size() < cloud.capacity()) {
+    const float x = place(random), y = place(random);
+    const auto cap = [&](float center) {
+      const float distance = std::hypot(x - center, y) / 0.4F;
+      return distance < 1 ? std::sqrt(1 - distance) : 0.0F;
+    };
+    cloud.push_back(x, y, 0.2F * x + cap(-0.55F) + cap(0.55F), 0);
+  }
+  EXPECT_EQ(run(cloud, small(DetectSettings::for_cloud())).obstacles.size(), 2U);
+}
+
 TEST_P(EachMethod, CountsWhatDoesNotFit) {
   const PointCloud cloud = test::bump_and_bowl(60'000);
   DetectSettings settings = settings_for_test();
