@@ -10,7 +10,6 @@
 #include "commands.hpp"
 #include "scree/app/pipeline.hpp"
 #include "simulator/scene.hpp"
-#include "simulator/truth.hpp"
 
 namespace scree::cli {
 namespace {
@@ -78,15 +77,6 @@ void run(const Options& options) {
 std::vector<Way> both_ways(const StudyTask& task) {
   return {{"paper, as printed", DetectSettings::for_paper()},
           {"Scree, as configured", task.settings.detect_cloud}};
-}
-
-CloudWorld::CloudWorld(const TerrainSettings& settings, std::size_t points, std::uint64_t seed)
-    : terrain(settings, seed) {
-  CloudSettings cloud_settings;
-  cloud_settings.points = points;
-  cloud = reconstructed_cloud(terrain, cloud_settings, seed);
-  truth = {
-      true_obstacles(terrain), {{0, Pose()}}, {{0, obstacle_ids(terrain), small_ids(terrain)}}};
 }
 
 Detector detector_of(const DetectSettings& settings, const StudyTask& task) {

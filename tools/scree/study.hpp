@@ -6,12 +6,11 @@
 #include <vector>
 
 #include "drawing.hpp"
-#include "scoring/truth.hpp"
 #include "scree/config/settings.hpp"
 #include "scree/core/point_cloud.hpp"
 #include "scree/detect/detector.hpp"
 #include "simulator/data_set.hpp"
-#include "simulator/terrain.hpp"
+#include "simulator/worlds.hpp"
 
 namespace scree::cli {
 
@@ -33,15 +32,6 @@ struct Way {
 
 /// The paper's way as printed, and ours as configured.
 std::vector<Way> both_ways(const StudyTask& task);
-
-/// A terrain with one reconstructed cloud of it, and what a list for it is scored against.
-struct CloudWorld {
-  CloudWorld(const TerrainSettings& settings, std::size_t points, std::uint64_t seed);
-
-  Terrain terrain;
-  PointCloud cloud;
-  Truth truth;
-};
 
 /// A detector for these settings with the weights that they name. Throws Failure.
 Detector detector_of(const DetectSettings& settings, const StudyTask& task);

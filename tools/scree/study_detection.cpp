@@ -10,14 +10,12 @@
 #include "score_text.hpp"
 #include "scoring/matching.hpp"
 #include "scree/app/pipeline.hpp"
-#include "simulator/lidar.hpp"
-#include "simulator/scene.hpp"
-#include "simulator/truth.hpp"
-#include "simulator/visibility.hpp"
 #include "study.hpp"
 
 namespace scree::cli {
 namespace {
+
+constexpr double kSweepRate = 10;  ///< turns a second
 
 /// Pairs of obstacles 0.3-0.6 m apart, and how many came out as two of the right kinds.
 struct Pairs {
@@ -61,37 +59,15 @@ std::vector<CloudScores> score_clouds(const std::vector<Way>& ways, const StudyT
   return scores;
 }
 
-/// One turn of a lidar at rest, at 10 Hz.
+/// One turn of a lidar at rest, in all scenes.
 Scorer score_sweeps(const StudyTask& task) {
-  const Settings& settings = task.settings;
-  auto pipeline = Pipeline::make(settings, task.config_folder);
+  auto pipeline = Pipeline::make(task.settings, task.config_folder);
   if (!pipeline) throw Failure(pipeline.error().message);
-  Sweep sweep(static_cast<std::size_t>(settings.detect_sweep.max_points));
   Scorer scorer;
   Progress progress("sweeps", task.seeds.count);
   for (std::size_t i = 0; i < task.seeds.count; ++i) {
-    TerrainSettings ground = scene_terrain();
-    ground.size = 2 * (ground.placed_within + 6);
-    const Terrain terrain(ground, task.seeds.first + i);
-    const RayCaster caster(terrain);
-    SimulatedLidarSettings lidar_settings;
-    lidar_settings.model = settings.lidar.model;
-    SimulatedLidar lidar(terrain, caster, lidar_settings, settings.lidar.mount(), 0,
-                         task.seeds.first + i);
-    Visibility visibility(terrain);
-    sweep.clear();
-    for (lidar.advance(); lidar.turns(lidar.packet_end_ns()) <= 1; lidar.advance()) {
-      visibility.add(lidar.shots());
-      for (std::size_t shot = 0; shot < lidar.shots().size(); ++shot) {
-        if (lidar.shots()[shot].range <= 0) continue;
-        const Eigen::Vector3f point = lidar.point_of(shot).cast<float>();
-        sweep.points.push_back(point.x(), point.y(), point.z(), lidar.shots()[shot].reflectivity);
-      }
-    }
-    visibility.end_sweep();
-    const Truth truth{
-        true_obstacles(terrain), {{0, Pose()}}, {{0, visibility.seen(), visibility.not_seen()}}};
-    scorer.add(truth, {&pipeline->process(sweep), 1});
+    const SweepWorld world(task.settings.lidar, kSweepRate, task.seeds.first + i);
+    scorer.add(world.truth, {&pipeline->process(world.sweep), 1});
     progress(i + 1);
   }
   return scorer;
@@ -135,8 +111,9 @@ Drawing sweep_chart(const ScoringResult& result, const StudyTask& task) {
   LineChart chart;
   chart.title = "Single sweeps, by distance";
   chart.subtitle = fmt::format(
-      "{} simulated sweeps of a VLP-16 at rest, 10 Hz, obstacles within 10 m; all kinds: F1 {:.3f}",
-      task.seeds.count, result.scores.all().f1());
+      "{} simulated sweeps of a VLP-16 at rest, {:g} Hz, all scenes, obstacles within 10 m; all "
+      "kinds: F1 {:.3f}",
+      task.seeds.count, kSweepRate, result.scores.all().f1());
   chart.x = {"distance of the obstacle (false positives: of the detection) [m]", 0, 12, false};
   chart.y = {"share", 0, 1, false};
   chart.lines = {{"precision", series_colour(0), {}, false, true},

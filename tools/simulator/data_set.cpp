@@ -4,9 +4,8 @@
 #include <cmath>
 
 #include "scree/app/pipeline.hpp"
-#include "simulator/lidar.hpp"
 #include "simulator/scene.hpp"
-#include "simulator/visibility.hpp"
+#include "simulator/worlds.hpp"
 
 namespace scree {
 
@@ -50,9 +49,9 @@ public:
         unused_(static_cast<std::size_t>(settings.detect_cloud.max_obstacles)) {}
 
   LabelledClusters operator()(std::uint64_t seed) {
-    const Terrain terrain(varied_terrain(seed), seed);
-    detector_.detect(reconstructed_cloud(terrain, varied_cloud(seed), seed), unused_);
-    return label_clusters(detector_, terrain.features(), obstacle_ids(terrain));
+    const CloudWorld world(varied_terrain(seed), varied_cloud(seed), seed);
+    detector_.detect(world.cloud, unused_);
+    return label_clusters(detector_, world.terrain.features(), world.truth.visible[0].ids);
   }
 
 private:
@@ -60,54 +59,22 @@ private:
   FixedVector<Obstacle> unused_;
 };
 
-/// The scenes in turn, with the robot at rest in their middle.
-TerrainSettings around_the_robot(std::uint64_t seed) {
-  const TerrainSettings around = scene_terrain();
-  TerrainSettings settings = scene_terrain(kScenes[seed % kScenes.size()],
-                                           4 * around.placed_within * around.placed_within, seed);
-  settings.placed_within = around.placed_within;
-  settings.clear_radius = around.clear_radius;
-  settings.level_radius = around.level_radius;
-  settings.size = 2 * (settings.placed_within + 6);
-  return settings;
-}
-
 class FromSweeps {
 public:
   explicit FromSweeps(const Settings& settings)
-      : mount_(settings.lidar.mount()),
-        pipeline_(settings, Detector(settings.detect_sweep, Network())),
-        sweep_(static_cast<std::size_t>(settings.detect_sweep.max_points)) {
-    lidar_.model = settings.lidar.model;
-  }
+      : lidar_(settings.lidar), pipeline_(settings, Detector(settings.detect_sweep, Network())) {}
 
   LabelledClusters operator()(std::uint64_t seed) {
     constexpr std::array kRates = {5.0, 10.0, 10.0, 20.0};
-    lidar_.rate_hz = kRates[Random(seed).index(kRates.size())];
-    const Terrain terrain(around_the_robot(seed), seed);
-    const RayCaster caster(terrain);
-    SimulatedLidar lidar(terrain, caster, lidar_, mount_, 0, seed);
-    Visibility visibility(terrain);
-    sweep_.clear();
-    for (lidar.advance(); lidar.turns(lidar.packet_end_ns()) <= 1; lidar.advance()) {
-      visibility.add(lidar.shots());
-      for (std::size_t i = 0; i < lidar.shots().size(); ++i) {
-        const SimulatedShot& shot = lidar.shots()[i];
-        if (shot.range <= 0) continue;
-        const Eigen::Vector3f point = lidar.point_of(i).cast<float>();
-        sweep_.points.push_back(point.x(), point.y(), point.z(), shot.reflectivity);
-      }
-    }
-    visibility.end_sweep();
-    pipeline_.process(sweep_);
-    return label_clusters(pipeline_.detector(), terrain.features(), visibility.seen());
+    const SweepWorld world(lidar_, kRates[Random(seed).index(kRates.size())], seed);
+    pipeline_.process(world.sweep);
+    return label_clusters(pipeline_.detector(), world.terrain.features(),
+                          world.truth.visible[0].ids);
   }
 
 private:
-  SimulatedLidarSettings lidar_;
-  Pose mount_;
+  LidarSettings lidar_;
   Pipeline pipeline_;
-  Sweep sweep_;
 };
 
 template <class From>
