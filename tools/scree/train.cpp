@@ -86,10 +86,12 @@ std::string provenance(const Options& options, const DetectSettings& detect,
   const std::string profile = name_in(kProfiles, options.profile);
   std::string text = fmt::format(
       "Network for {}s, trained by Levenberg-Marquardt on clusters of simulated terrain.\n"
-      "scree train --profile {} --seed {} --training {} --validation {} --held-out {} --hidden {} --inputs {} "
+      "scree train --profile {}{} --seed {} --training {} --validation {} --held-out {} --hidden "
+      "{} --inputs {} "
       "--restarts {} --counts {}\n\n",
-      profile, profile, options.seed, options.training, options.validation, options.held_out,
-      options.learn.hidden, options.learn.inputs, options.learn.restarts, name_in(kForms, options.counts));
+      profile, profile, options.config.empty() ? "" : " --config " + options.config, options.seed,
+      options.training, options.validation, options.held_out, options.learn.hidden,
+      options.learn.inputs, options.learn.restarts, name_in(kForms, options.counts));
   for (const Part& part : parts) text += describe(part);
   text += fmt::format("{} steps, best {}: {}; mean squared error {:.6f}, validation {:.6f}\n\n",
                       result.curve.size() - 1, result.best, name_of(result.stop),
@@ -168,9 +170,9 @@ void add_train(CLI::App& app) {
       ->check(CLI::Range(std::size_t{1}, Network::kMaxHidden))
       ->capture_default_str();
   command
-      ->add_option("--inputs", options->learn.inputs,
-                   fmt::format("how many of the features; the paper's are the first {}",
-                               kPaperFeatures))
+      ->add_option(
+          "--inputs", options->learn.inputs,
+          fmt::format("how many of the features; the paper's are the first {}", kPaperFeatures))
       ->check(CLI::Range(std::size_t{1}, std::size_t{kFeatures}))
       ->capture_default_str();
   command->add_option("--restarts", options->learn.restarts, "starts from other weights")

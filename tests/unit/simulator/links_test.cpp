@@ -1,11 +1,11 @@
 #include "simulator/links.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstring>
 #include <fstream>
 #include <iterator>
-#include <regex>
 
 namespace scree {
 namespace {
@@ -91,12 +91,13 @@ TEST(CanBus, LogsAsCandumpDoes) {
   bus.run_until(1'598'601'601'000'000'000, encoder);
   ASSERT_TRUE(bus.close());
   std::ifstream stream(file);
-  const std::regex form(R"(\(\d{10}\.\d{6}\) can0 ([0-9A-F]{3}|[0-9A-F]{8})#[0-9A-F]{16})");
+  const auto has_the_form = testing::MatchesRegex(
+      R"(\([0-9]{10}\.[0-9]{6}\) can0 ([0-9A-F]{3}|[0-9A-F]{8})#[0-9A-F]{16})");
   int encoders = 0;
   int all = 0;
   double before = 0;
   for (std::string line; std::getline(stream, line); ++all) {
-    EXPECT_TRUE(std::regex_match(line, form)) << line;
+    EXPECT_THAT(line, has_the_form);
     encoders += line.find(" 18FF50E5#") != std::string::npos ? 1 : 0;
     const double t = std::stod(line.substr(1));
     EXPECT_GT(t, before);
