@@ -11,6 +11,7 @@ import tempfile
 import unittest
 
 SCREE, DATA = sys.argv[1:3]
+PAPER = os.path.join(os.path.dirname(__file__), "..", "..", "config", "paper.toml")
 KEYS = ["id", "kind", "confidence", "center", "extent", "yaw", "height", "points"]
 
 
@@ -65,6 +66,25 @@ class DetectTest(unittest.TestCase):
             self.assertEqual((len(obstacle["center"]), len(obstacle["extent"])), (3, 3))
             self.assertTrue(all(math.isfinite(v) for v in obstacle["center"] + obstacle["extent"]))
 
+    def stages(self, *arguments):
+        """Counts of the stages by name, and the names of their clouds."""
+        done = self.scree("detect", self.simulated_cloud(), "--out", self.path("l.jsonl"),
+                          "--stages", self.path("stages"), *arguments)  # fmt: skip
+        counts = {}
+        for stage in done.stdout.strip().split(" -> "):
+            name, count = stage.rsplit(" ", 1)
+            counts[name] = int(count)
+        self.assertEqual(counts["input"], 900000)
+        self.assertGreater(counts["obstacles"], 0)
+        names = sorted(os.listdir(self.path("stages")))
+        self.assertEqual(names[0], "0_input.pcd")
+        self.assertEqual(names[-1], "7_clusters.pcd")
+        return counts, names
+
+    def assert_falling(self, counts, *names):
+        falling = [counts[name] for name in names]
+        self.assertEqual(falling, sorted(falling, reverse=True), names)
+
     def test_a_cloud_gives_one_list_that_fits_its_truth(self):
         lists = self.detect(self.simulated_cloud())
         self.assertEqual(len(lists), 1)
@@ -102,17 +122,23 @@ class DetectTest(unittest.TestCase):
         self.assertEqual(printed.encode(), texts[0])
 
     def test_stages_are_written_and_counted(self):
-        done = self.scree("detect", self.simulated_cloud(), "--out", self.path("l.jsonl"),
-                          "--stages", self.path("stages"))  # fmt: skip
-        counts = [int(word) for word in done.stdout.split() if word.isdigit()]
-        self.assertEqual(counts[0], 900000)
-        self.assertEqual(counts[:5], sorted(counts[:5], reverse=True))
-        names = sorted(os.listdir(self.path("stages")))
-        self.assertEqual(names[0], "0_input.pcd")
-        self.assertEqual(names[-1], "7_clusters.pcd")
-        self.assertEqual(len(names), 8)
+        counts, names = self.stages()
+        # Bodies have level points too, and some without a slope.
+        self.assert_falling(counts, "input", "voxel grid", "below clearance", "edges", "clusters")
+        self.assert_falling(counts, "below clearance", "with slope")
+        self.assertEqual(counts["suppression"], counts["edges"])  # ours has none
+        self.assertNotIn("5_supervoxels.pcd", names)
         # A stage's cloud is a cloud like any other.
         self.detect(self.path("stages/1_voxel_grid.pcd"))
+
+    def test_stages_of_the_paper_fall_one_after_the_other(self):
+        counts, names = self.stages("--config", PAPER)
+        self.assert_falling(counts, "input", "voxel grid", "below clearance", "with slope",
+                            "edges", "suppression", "super-voxels", "large enough", "clusters",
+                            "obstacles")  # fmt: skip
+        self.assertLess(counts["suppression"], counts["edges"])
+        self.assertIn("5_supervoxels.pcd", names)
+        self.assertIn("6_centers.pcd", names)
 
     def test_every_kind_of_pcd_is_read(self):
         draw = random.Random(1)

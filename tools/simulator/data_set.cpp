@@ -36,12 +36,6 @@ CloudSettings varied_cloud(std::uint64_t seed) {
 
 namespace {
 
-void append(LabelledClusters& all, const LabelledClusters& part) {
-  all.samples.insert(all.samples.end(), part.samples.begin(), part.samples.end());
-  all.obstacles += part.obstacles;
-  all.found += part.found;
-}
-
 class FromClouds {
 public:
   explicit FromClouds(const Settings& settings)
@@ -82,7 +76,7 @@ LabelledClusters gather(From from, SeedRange seeds,
                         const std::function<void(std::size_t)>& progress) {
   LabelledClusters all;
   for (std::size_t i = 0; i < seeds.count; ++i) {
-    append(all, from(seeds.first + i));
+    all += from(seeds.first + i);
     progress(i + 1);
   }
   return all;

@@ -43,6 +43,13 @@ Label label_of(const TerrainFeature* feature, const Features& features) {
 
 }  // namespace
 
+LabelledClusters& LabelledClusters::operator+=(const LabelledClusters& other) {
+  samples.insert(samples.end(), other.samples.begin(), other.samples.end());
+  obstacles += other.obstacles;
+  found += other.found;
+  return *this;
+}
+
 LabelledClusters label_clusters(const Detector& detector, std::span<const TerrainFeature> features,
                                 std::span<const int> asked) {
   LabelledClusters labelled;

@@ -10,11 +10,13 @@
 
 namespace scree {
 
-/// What the detector made of one terrain.
+/// What the detector made of one terrain or of several.
 struct LabelledClusters {
   std::vector<Sample> samples;
   std::size_t obstacles = 0;  ///< rocks and holes that are asked for
   std::size_t found = 0;      ///< of them those with a cluster
+
+  LabelledClusters& operator+=(const LabelledClusters& other);
 };
 
 /// Names the truth of each cluster of the detector's last cloud, which must lie in the frame of

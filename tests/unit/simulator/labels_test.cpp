@@ -1,0 +1,133 @@
+#include "simulator/labels.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "unit/detect/clouds.hpp"
+
+namespace scree {
+namespace {
+
+using test::kBowlX, test::kBumpX, test::kRoundRadius;
+using testing::ElementsAre, testing::IsEmpty, testing::UnorderedElementsAre;
+
+Footprint rectangle(double x0, double y0, double x1, double y1) {
+  return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
+}
+
+/// Around the bump or the bowl of the cloud.
+Footprint around(double x, double radius = static_cast<double>(kRoundRadius)) {
+  return rectangle(x - radius, -radius, x + radius, radius);
+}
+
+TerrainFeature feature(int id, std::optional<ObstacleKind> kind, const Footprint& footprint) {
+  TerrainFeature feature;
+  feature.id = id;
+  feature.kind = kind;
+  feature.footprint = footprint;
+  return feature;
+}
+
+/// A cloud with two clusters, that of a bump and that of a bowl, and features at will.
+class Labels : public testing::Test {
+protected:
+  static void SetUpTestSuite() {
+    detector_ = new Detector(settings(), Network());
+    FixedVector<Obstacle> unused(1);
+    detector_->detect(test::bump_and_bowl(50'000), unused);
+  }
+  static void TearDownTestSuite() {
+    delete detector_;
+    detector_ = nullptr;
+  }
+
+  void SetUp() override { ASSERT_EQ(detector_->clusters().all().size(), 2U); }
+
+  static LabelledClusters label(const std::vector<TerrainFeature>& features,
+                                const std::vector<int>& asked = {}) {
+    return label_clusters(*detector_, features, asked);
+  }
+
+  static std::vector<Label> labels(const std::vector<TerrainFeature>& features) {
+    std::vector<Label> labels;
+    for (const Sample& sample : label(features).samples) labels.push_back(sample.label);
+    return labels;
+  }
+
+  static constexpr auto kRock = ObstacleKind::positive, kHole = ObstacleKind::negative;
+
+private:
+  static DetectSettings settings() {
+    DetectSettings settings = DetectSettings::for_cloud();
+    settings.max_points = 60'000;
+    settings.max_edge_points = 30'000;
+    settings.max_ground_cells = 1 << 15;
+    return settings;
+  }
+
+  static inline Detector* detector_ = nullptr;
+};
+
+TEST_F(Labels, RocksAndHolesAreWhatTheyAre) {
+  EXPECT_THAT(labels({feature(1, kRock, around(kBumpX)), feature(2, kHole, around(kBowlX))}),
+              UnorderedElementsAre(Label::positive, Label::negative));
+}
+
+TEST_F(Labels, WithoutAnyFeatureAllAreNone) {
+  EXPECT_THAT(labels({}), ElementsAre(Label::none, Label::none));
+}
+
+TEST_F(Labels, AnObstacleOnAMoundIsItself) {
+  const auto mound = feature(1, std::nullopt, around(kBumpX, 2));
+  EXPECT_THAT(labels({mound}), ElementsAre(Label::none, Label::none));
+  EXPECT_THAT(labels({mound, feature(2, kRock, around(kBumpX))}),
+              UnorderedElementsAre(Label::positive, Label::none));
+}
+
+TEST_F(Labels, TheRimOfACraterIsNone) {
+  EXPECT_THAT(labels({feature(1, kHole, around(kBumpX))}), ElementsAre(Label::none, Label::none));
+}
+
+TEST_F(Labels, AHollowBesideARockIsNone) {
+  EXPECT_THAT(labels({feature(1, kRock, around(kBowlX))}), ElementsAre(Label::none, Label::none));
+}
+
+TEST_F(Labels, SmallStonesAndDentsAreLeftOut) {
+  std::vector<TerrainFeature> features = {feature(1, kRock, around(kBumpX)),
+                                          feature(2, kHole, around(kBowlX))};
+  features[0].is_small = true;
+  EXPECT_THAT(labels(features), ElementsAre(Label::negative));
+  features[1].is_small = true;
+  EXPECT_THAT(labels(features), IsEmpty());
+}
+
+TEST_F(Labels, HalfOfThePointsInTheFootprintAreEnough) {
+  // A slit leaves the middle of the bump out; then a strip reaches its edge only.
+  const double x = kBumpX;
+  const Footprint most = {{x - 1, -1},     {x + 1, -1},     {x + 1, 1},   {x + 0.2, 1},
+                          {x + 0.2, -0.2}, {x - 0.2, -0.2}, {x - 0.2, 1}, {x - 1, 1}};
+  EXPECT_THAT(labels({feature(1, kRock, most)}),
+              UnorderedElementsAre(Label::positive, Label::none));
+  const Footprint edge = rectangle(x + 0.4, -1, x + 1, 1);
+  EXPECT_THAT(labels({feature(1, kRock, edge)}), ElementsAre(Label::none, Label::none));
+}
+
+TEST_F(Labels, CountsWhatIsAskedForAndFound) {
+  const std::vector<TerrainFeature> features = {feature(1, kRock, around(kBumpX)),
+                                                feature(2, kHole, around(kBowlX)),
+                                                feature(3, kRock, rectangle(-3.5, 2, -2.5, 3))};
+  LabelledClusters all = label(features, {1, 2, 3});
+  EXPECT_EQ(all.obstacles, 3U);
+  EXPECT_EQ(all.found, 2U);
+  const LabelledClusters one = label(features, {2});
+  EXPECT_EQ(one.obstacles, 1U);
+  EXPECT_EQ(one.found, 1U);
+  EXPECT_EQ(one.samples.size(), 2U);  // what is not asked for still has a label
+  all += one;
+  EXPECT_EQ(all.obstacles, 4U);
+  EXPECT_EQ(all.found, 3U);
+  EXPECT_EQ(all.samples.size(), 4U);
+}
+
+}  // namespace
+}  // namespace scree
