@@ -124,9 +124,9 @@ class DetectTest(unittest.TestCase):
     def test_stages_are_written_and_counted(self):
         counts, names = self.stages()
         # Bodies have level points too, and some without a slope.
-        self.assert_falling(counts, "input", "voxel grid", "below clearance", "edges", "clusters")
+        self.assert_falling(counts, "input", "voxel grid", "below clearance", "candidates", "clusters")
         self.assert_falling(counts, "below clearance", "with slope")
-        self.assertEqual(counts["suppression"], counts["edges"])  # ours has none
+        self.assert_falling(counts, "candidates", "kept")  # without lone points
         self.assertNotIn("5_supervoxels.pcd", names)
         # A stage's cloud is a cloud like any other.
         self.detect(self.path("stages/1_voxel_grid.pcd"))
@@ -134,9 +134,9 @@ class DetectTest(unittest.TestCase):
     def test_stages_of_the_paper_fall_one_after_the_other(self):
         counts, names = self.stages("--config", PAPER)
         self.assert_falling(counts, "input", "voxel grid", "below clearance", "with slope",
-                            "edges", "suppression", "super-voxels", "large enough", "clusters",
+                            "candidates", "kept", "super-voxels", "large enough", "clusters",
                             "obstacles")  # fmt: skip
-        self.assertLess(counts["suppression"], counts["edges"])
+        self.assertLess(counts["kept"], counts["candidates"])
         self.assertIn("5_supervoxels.pcd", names)
         self.assertIn("6_centers.pcd", names)
 

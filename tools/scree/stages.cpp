@@ -52,8 +52,8 @@ void write_stages(const Detector& detector, PointView input, const std::filesyst
   write("2_slope.pcd", with_value(detector.cells().points(), [&](std::size_t i) {
           return std::hypot(detector.slope_x()[i], detector.slope_y()[i]);
         }));
-  write("3_edges.pcd", with_slope(detector.edges()));
-  write("4_suppression.pcd", with_slope(kept));
+  write("3_candidates.pcd", with_slope(detector.edges()));
+  write("4_kept.pcd", with_slope(kept));
   if (detector.uses_supervoxels()) {
     const auto blocks = detector.supervoxels().labels();
     write("5_supervoxels.pcd", with_value(kept.points, [&](std::size_t i) {
@@ -66,7 +66,7 @@ void write_stages(const Detector& detector, PointView input, const std::filesyst
 
 std::string chain(const StageCounts& counts) {
   return fmt::format(
-      "input {} -> voxel grid {} -> below clearance {} -> with slope {} -> edges {} -> suppression "
+      "input {} -> voxel grid {} -> below clearance {} -> with slope {} -> candidates {} -> kept "
       "{} -> super-voxels {} "
       "-> large enough {} -> clusters {} -> obstacles {}",
       counts.input, counts.voxels, counts.below_clearance, counts.known, counts.edges, counts.kept,
