@@ -79,6 +79,13 @@ class StudyTest(unittest.TestCase):
         rows = self.study("classifiers", "classifiers.csv", "classifiers.png", points=600000)
         self.assertEqual([row[-3:] for row in rows][-1], ["0.963", "0.988", "0.975"])
 
+    def test_changes(self):
+        rows = self.study("changes", "changes.csv", "changes.png")
+        self.assertIn("paper", rows[1][0])
+        for row in rows[1:]:
+            self.assertTrue(all(0 <= float(share) <= 1 for share in row[1:6]), row)
+            self.assertLessEqual(int(row[7]), int(row[6]))  # pairs parted
+
     def test_detection(self):
         self.study("detection", "detection.txt", "detection.png", "detection-sweeps.png")
 

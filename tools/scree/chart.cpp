@@ -147,13 +147,22 @@ void draw_legend_entry(Drawing& drawing, double& y, const std::string& name, Col
   y += 12;
 }
 
-/// A number over a bar, as large as the bar is wide.
+/// A number over a bar, as large as the bar is wide; where that is too small to read, upward.
 void draw_number(Drawing& drawing, const Rectangle& place, const std::string& number) {
-  constexpr double kLargest = 15;
+  constexpr double kLargest = 15, kUpward = 13, kSmallest = 9;
   const double width = drawing.text_width(number, kLargest, true);
   const double size = std::min(kLargest, kLargest * (place.width - 3) / width);
-  drawing.text_with_rim(place.x + (place.width - width * size / kLargest) / 2, place.y, number,
-                        size, kText);
+  if (size >= kSmallest) {
+    drawing.text_with_rim(place.x + (place.width - width * size / kLargest) / 2, place.y, number,
+                          size, kText);
+    return;
+  }
+  cairo_t* cairo = drawing.cairo();
+  cairo_save(cairo);
+  cairo_translate(cairo, place.x + place.width / 2 + 0.36 * kUpward, place.y);
+  cairo_rotate(cairo, -std::acos(0.0));
+  drawing.text_with_rim(0, 0, number, kUpward, kText);
+  cairo_restore(cairo);
 }
 
 }  // namespace

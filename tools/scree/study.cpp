@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "commands.hpp"
+#include "progress.hpp"
 #include "scree/app/pipeline.hpp"
 #include "simulator/scene.hpp"
 
@@ -20,7 +21,7 @@ struct Study {
   void (*run)(const StudyTask&);
 };
 
-constexpr std::array<Study, 7> kStudies = {{
+constexpr std::array<Study, 8> kStudies = {{
     {"training", "Levenberg-Marquardt against back-propagation (fig. 7)", 10, study_training},
     {"clustering", "plain Euclidean against super-voxel clustering (fig. 14, 16)", 20,
      study_clustering},
@@ -29,6 +30,7 @@ constexpr std::array<Study, 7> kStudies = {{
     {"result", "what is found in one cloud (fig. 17, 20)", 1, study_result},
     {"classifiers", "LM-BP, BPNN and SVM on frames of five obstacles (fig. 21)", 65,
      study_classifiers},
+    {"changes", "what each change to the paper's method brought", 24, study_changes},
     {"detection", "detection and kind together, clouds and single sweeps", 65, study_detection},
 }};
 
@@ -98,6 +100,23 @@ ObstacleList list_of(Detector& detector, PointView cloud, const DetectSettings& 
   return list;
 }
 
+std::vector<LabelledClusters> label_worlds(
+    std::span<Detector> detectors, const std::function<CloudWorld(std::uint64_t seed)>& world_of,
+    const SeedRange& seeds, const std::string& what) {
+  std::vector<LabelledClusters> all(detectors.size());
+  FixedVector<Obstacle> unused(1);
+  Progress progress("clusters for " + what, seeds.count);
+  for (std::size_t i = 0; i < seeds.count; ++i) {
+    const CloudWorld world = world_of(seeds.first + i);
+    for (std::size_t d = 0; d < detectors.size(); ++d) {
+      detectors[d].detect(world.cloud, unused);
+      all[d] += label_clusters(detectors[d], world.terrain.features(), world.truth.visible[0].ids);
+    }
+    progress(i + 1);
+  }
+  return all;
+}
+
 void write_table(const StudyTask& task, const std::string& name, const std::string& text) {
   std::ofstream stream(task.out / name, std::ios::binary);
   stream << text << std::flush;
@@ -128,7 +147,8 @@ void add_study(CLI::App& app) {
   command->add_option("--training", options->training, "terrains to train on, where a study trains")
       ->check(CLI::Range(1, 100'000))
       ->capture_default_str();
-  command->add_option("--points", options->points, "of each cloud")
+  command
+      ->add_option("--points", options->points, "of each cloud, where a study does not vary them")
       ->check(CLI::Range(std::size_t{1000}, std::size_t{1} << 20U))
       ->capture_default_str();
   command->callback([options] { run(*options); });

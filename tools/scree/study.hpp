@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -39,6 +41,12 @@ std::vector<Detector> detectors_of(const std::vector<Way>& ways, const StudyTask
 /// Its answer to a cloud.
 ObstacleList list_of(Detector& detector, PointView cloud, const DetectSettings& settings);
 
+/// What each detector makes of the clouds of the same worlds, one for each detector.
+/// @param what the clusters are for, in the progress
+std::vector<LabelledClusters> label_worlds(
+    std::span<Detector> detectors, const std::function<CloudWorld(std::uint64_t seed)>& world_of,
+    const SeedRange& seeds, const std::string& what);
+
 /// Write into the task's folder and say so on stdout. Throw Failure.
 void write_table(const StudyTask& task, const std::string& name, const std::string& text);
 void write_picture(const StudyTask& task, const std::string& name, Drawing& drawing);
@@ -50,6 +58,7 @@ void study_seed_distance(const StudyTask& task);
 void study_stages(const StudyTask& task);
 void study_result(const StudyTask& task);
 void study_classifiers(const StudyTask& task);
+void study_changes(const StudyTask& task);
 void study_detection(const StudyTask& task);
 
 }  // namespace scree::cli

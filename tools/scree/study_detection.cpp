@@ -1,42 +1,19 @@
 #include <spdlog/fmt/fmt.h>
 
-#include <algorithm>
 #include <limits>
-#include <map>
 
 #include "chart.hpp"
 #include "commands.hpp"
 #include "progress.hpp"
 #include "score_text.hpp"
-#include "scoring/matching.hpp"
 #include "scree/app/pipeline.hpp"
 #include "study.hpp"
+#include "study_pairs.hpp"
 
 namespace scree::cli {
 namespace {
 
 constexpr double kSweepRate = 10;  ///< turns a second
-
-/// Pairs of obstacles 0.3-0.6 m apart, and how many came out as two of the right kinds.
-struct Pairs {
-  std::size_t all = 0, parted = 0;
-
-  void add(const CloudWorld& world, const Comparison& comparison) {
-    std::map<int, bool> is_right;
-    for (const auto& asked : comparison.asked) is_right[asked.obstacle->id] = asked.is_right;
-    for (const TerrainFeature& feature : world.terrain.features()) {
-      const auto one = is_right.find(feature.id);
-      const auto other = is_right.find(feature.partner);
-      // Each pair once; where only one names the other that one counts.
-      if (one == is_right.end() || other == is_right.end()) continue;
-      const auto& features = world.terrain.features();
-      const auto partner = std::ranges::find(features, feature.partner, &TerrainFeature::id);
-      if (partner->partner == feature.id && partner->id < feature.id) continue;
-      ++all;
-      parted += one->second && other->second ? 1U : 0U;
-    }
-  }
-};
 
 struct CloudScores {
   Scorer scorer;
@@ -76,8 +53,7 @@ Scorer score_sweeps(const StudyTask& task) {
 std::string pairs_line(const Pairs& pairs) {
   if (pairs.all == 0) return "\nno pairs in these clouds\n";
   return fmt::format("\npairs 0.3-0.6 m apart that came out as two: {} of {} ({:.1f} %)\n",
-                     pairs.parted, pairs.all,
-                     100.0 * static_cast<double>(pairs.parted) / static_cast<double>(pairs.all));
+                     pairs.parted, pairs.all, 100 * pairs.share_parted());
 }
 
 Drawing cloud_chart(const std::vector<Way>& ways, const std::vector<CloudScores>& scores,
@@ -91,14 +67,10 @@ Drawing cloud_chart(const std::vector<Way>& ways, const std::vector<CloudScores>
   chart.groups = {"precision", "recall", "F1", "F1 rocks", "F1 holes", "pairs parted"};
   for (std::size_t w = 0; w < ways.size(); ++w) {
     const Scores& s = scores[w].scorer.result().scores;
-    const Pairs& pairs = scores[w].pairs;
-    const double parted = pairs.all == 0
-                              ? std::numeric_limits<double>::quiet_NaN()
-                              : static_cast<double>(pairs.parted) / static_cast<double>(pairs.all);
     chart.series.push_back({ways[w].name,
                             series_colour(w),
                             {s.all().precision(), s.all().recall(), s.all().f1(), s.positive.f1(),
-                             s.negative.f1(), parted}});
+                             s.negative.f1(), scores[w].pairs.share_parted()}});
   }
   const double none = std::numeric_limits<double>::quiet_NaN();
   chart.series.push_back({"the paper's result on its own 65 frames (fig. 21)",
