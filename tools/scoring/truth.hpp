@@ -23,7 +23,7 @@ struct TrueObstacle {
   std::string shape;  ///< what it is ("boulder", "ditch", ...); empty: unknown
 };
 
-/// What truth.json says (CONTRACT.md): one gravity-aligned world frame, metres.
+/// What truth.json says: one gravity-aligned world frame, metres.
 struct Truth {
   struct TimedPose {
     std::int64_t t_ns;

@@ -60,9 +60,9 @@ Drawing cloud_chart(const std::vector<Way>& ways, const std::vector<CloudScores>
                     const StudyTask& task) {
   BarChart chart;
   chart.title = "Detection and kind together on reconstructed clouds";
-  chart.subtitle =
-      fmt::format("{} simulated clouds of {} points, scored as CONTRACT.md says; goal: F1 0.98",
-                  task.seeds.count, task.points);
+  chart.subtitle = fmt::format(
+      "{} simulated clouds of {} points; each obstacle to be found once, with the right kind",
+      task.seeds.count, task.points);
   chart.y = {"share", 0, 1, false};
   chart.groups = {"precision", "recall", "F1", "F1 rocks", "F1 holes", "pairs parted"};
   for (std::size_t w = 0; w < ways.size(); ++w) {

@@ -27,7 +27,7 @@ struct CaptureSettings {
 };
 
 /// Writes a capture of a robot that drives over a terrain of this seed: lidar.pcap, imu.pcap,
-/// can.log, scree.toml and truth.json (CONTRACT.md). The same settings give the same bytes. Fails
+/// can.log, scree.toml and truth.json. The same settings give the same bytes. Fails
 /// when a file cannot be written.
 /// @param progress called with the share done, in per mille
 Result<void> write_capture(const std::filesystem::path& folder, const CaptureSettings& settings,

@@ -214,6 +214,7 @@ private:
 template <class Draw>
 std::vector<Group> several(int count, Draw draw) {
   std::vector<Group> groups;
+  groups.reserve(static_cast<std::size_t>(std::max(count, 0)));
   for (int i = 0; i < count; ++i) groups.push_back(draw());
   return groups;
 }
