@@ -1,0 +1,19 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+
+namespace scree {
+
+/// One measurement of the IMU, in its own axes (`imu` frame). What the device did not send is
+/// absent.
+struct ImuSample {
+  std::int64_t t_ns = 0;  ///< host time of the measurement
+  bool has_orientation = false, has_rate = false, has_acceleration = false;
+  /// `imu` in a gravity-aligned frame, z up, whose yaw need not be north.
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d rate = Eigen::Vector3d::Zero();          ///< rad/s
+  Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();  ///< specific force, m/s^2
+};
+
+}  // namespace scree
