@@ -156,7 +156,7 @@ Result<void> write_imu(const std::filesystem::path& file, const CaptureSettings&
   constexpr std::int64_t kBurstNs = 16'000'000;
   SerialPort port(*pcap, robot.imu.baud, settings.imu_bursts ? kBurstNs : 0, settings.seed);
   greet(port, start);
-  for (ImuSample sample = imu.next(); sample.t_ns < end_ns; sample = imu.next()) {
+  for (ImuMessage sample = imu.next(); sample.t_ns < end_ns; sample = imu.next()) {
     port.send(sample.t_ns + held_back, mt_data2(sample));
   }
   port.finish();

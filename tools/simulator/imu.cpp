@@ -46,9 +46,9 @@ void SimulatedImu::wander() {
   yaw_rate_ += 0.1 * settings_.yaw_drift * std::sqrt(step) * random_.normal();
 }
 
-ImuSample SimulatedImu::next() {
+ImuMessage SimulatedImu::next() {
   const double interval = 1e9 / settings_.rate_hz / (1 + settings_.clock_skew);
-  ImuSample sample;
+  ImuMessage sample;
   sample.t_ns = start_ns_ + static_cast<std::int64_t>(static_cast<double>(samples_) * interval);
   sample.packet_counter = static_cast<std::uint16_t>(first_counter_ + samples_);
   const auto ticks =

@@ -36,7 +36,7 @@ public:
   SimulatedImu(const Motion& motion, const Pose& mount, const SimulatedImuSettings& settings,
                std::int64_t start_ns, std::uint64_t seed);
 
-  ImuSample next();
+  ImuMessage next();
 
 private:
   Pose sensor(std::int64_t t_ns) const;

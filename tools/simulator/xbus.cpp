@@ -48,7 +48,7 @@ std::vector<std::uint8_t> xbus_message(MessageId id, std::span<const std::uint8_
   return bytes;
 }
 
-std::vector<std::uint8_t> mt_data2(const ImuSample& sample) {
+std::vector<std::uint8_t> mt_data2(const ImuMessage& sample) {
   Data data;
   data.begin(DataId::packet_counter, 2);
   data.put(sample.packet_counter);

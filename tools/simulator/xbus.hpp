@@ -10,7 +10,7 @@
 namespace scree {
 
 /// What an MTi measures at one moment, as it sends it.
-struct ImuSample {
+struct ImuMessage {
   std::int64_t t_ns = 0;  ///< host's time of the measurement
   std::uint16_t packet_counter = 0;
   std::uint32_t sample_time_fine = 0;
@@ -25,6 +25,6 @@ std::vector<std::uint8_t> xbus_message(xsens::MessageId id, std::span<const std:
 
 /// The MTData2 message of a sample: packet counter, sample time, quaternion, acceleration, rate of
 /// turn and status word, numbers as float32.
-std::vector<std::uint8_t> mt_data2(const ImuSample& sample);
+std::vector<std::uint8_t> mt_data2(const ImuMessage& sample);
 
 }  // namespace scree

@@ -37,7 +37,7 @@ double number(const std::vector<std::uint8_t>& bytes, std::size_t index) {
 }
 
 TEST(Xbus, MessageReadsBackByTheDocumentation) {
-  ImuSample sample;
+  ImuMessage sample;
   sample.packet_counter = 0xABCD;
   sample.sample_time_fine = 0x01020304;
   sample.orientation = {0.5, -0.5, 0.5, 0.5};
@@ -84,7 +84,7 @@ TEST(SimulatedImu, MeasuresRatesForcesAndOrientation) {
   settings.yaw_offset = 0.7;
   SimulatedImu imu(motion, mount, settings, 1'000'000'000, 1);
   for (int i = 0; i < 500; ++i) {
-    const ImuSample sample = imu.next();
+    const ImuMessage sample = imu.next();
     EXPECT_EQ(sample.t_ns, 1'000'000'000 + i * 10'000'000LL);
     // The sensor's x axis points to the left of the body: which turns about the world's z axis.
     const Eigen::Vector3d turning(0.5 * std::sin(0.1), 0, 0.5 * std::cos(0.1));
@@ -105,8 +105,8 @@ TEST(SimulatedImu, CountsAndKeepsItsOwnTime) {
   settings.clock_skew = 1e-4;
   settings.rate_hz = 400;
   SimulatedImu imu(motion, Pose(), settings, 0, 1);
-  const ImuSample first = imu.next();
-  ImuSample last;
+  const ImuMessage first = imu.next();
+  ImuMessage last;
   for (int i = 0; i < 40000; ++i) last = imu.next();
   EXPECT_EQ(static_cast<std::uint16_t>(last.packet_counter - first.packet_counter), 40000U);
   EXPECT_EQ(last.sample_time_fine - first.sample_time_fine, 1'000'000U);  // 100 s of its own
@@ -124,7 +124,7 @@ TEST(SimulatedImu, ErrorsAreAsLargeAsSet) {
   double rate = 0;
   constexpr int kSamples = 60000;
   for (int i = 0; i < kSamples; ++i) {
-    const ImuSample sample = imu.next();
+    const ImuMessage sample = imu.next();
     const double lean = (sample.orientation * Eigen::Vector3d::UnitZ()).head<2>().squaredNorm();
     tilt += lean / 2;
     rate += sample.rate_of_turn.squaredNorm() / 3;
