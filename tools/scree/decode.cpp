@@ -10,6 +10,7 @@ namespace {
 
 const std::map<std::string, void (*)(const DecodeOptions&)>& sensors() {
   static const std::map<std::string, void (*)(const DecodeOptions&)> all = {
+      {"imu", decode_imu},
       {"lidar", decode_lidar},
   };
   return all;
@@ -30,7 +31,12 @@ void add_decode(CLI::App& app) {
       "Lidar: folder for one PCD a sweep as well; of two equal dual returns it has one");
   command->add_option("--config", options->config,
                       "Configuration; the capture's own scree.toml when not given");
-  command->callback([options] { sensors().at(options->sensor)(*options); });
+  command->callback([options] {
+    if (!options->pcd.empty() && options->sensor != "lidar") {
+      throw CLI::ValidationError("--pcd", "is for the lidar");
+    }
+    sensors().at(options->sensor)(*options);
+  });
 }
 
 }  // namespace scree::cli
