@@ -125,6 +125,17 @@ void for_each_key(AnySettings& settings, Visit&& visit) {
   auto& imu = settings.imu;
   key("device", imu.device, "", 0, 0, "serial port of the Xsens MTi");
   key("baud", imu.baud, "bit/s", 4800, 4000000, "its bit rate");
+  key("configure", imu.configure, "", 0, 0,
+      "set up its bit rate and its outputs at start; with false it is taken as it is and nothing "
+      "is "
+      "sent to it");
+  key("rate", imu.rate, "Hz", 100, 400,
+      "orientations, accelerations and rates a second: more follows fast motion better and needs a "
+      "faster line");
+  key("acceleration_hr_rate", imu.acceleration_hr_rate, "Hz", 0, 1000,
+      "accelerations a second besides, at high rate; 0 for none");
+  key("gyro_hr_rate", imu.gyro_hr_rate, "Hz", 0, 1000,
+      "rates of turn a second besides, at high rate; 0 for none");
   key("rpy_deg", imu.rpy_deg, "deg", -360, 360, "rotation imu -> base: roll, pitch, yaw");
   key("translation", imu.translation, "m", -100, 100, "imu origin in base: x, y, z");
 

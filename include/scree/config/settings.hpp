@@ -86,6 +86,10 @@ struct LidarSettings {
 struct ImuSettings {
   std::string device = "/dev/ttyUSB0";
   int baud = 921600;
+  bool configure = true;
+  int rate = 100;
+  int acceleration_hr_rate = 0;
+  int gyro_hr_rate = 0;
   Eigen::Vector3d rpy_deg{0, 0, 0};
   Eigen::Vector3d translation{0, 0, 0};
 
