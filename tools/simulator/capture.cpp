@@ -167,11 +167,12 @@ Result<void> write_can(const std::filesystem::path& file, const CaptureSettings&
                        const Robot& robot, const Motion& motion, std::int64_t end_ns) {
   const SimulatedEncoderSettings drawn = draw_encoder(settings);
   SimulatedEncoder encoder(motion, robot.encoder, drawn, settings.seed);
-  CanBus bus(file, robot.encoder, settings.seed);
+  auto log = CanLogWriter::create(file);
+  if (!log) return tl::make_unexpected(log.error());
+  CanBus bus(*log, robot.encoder, settings.seed);
   bus.start(kStartNs - 50'000'000, drawn.rate_hz);
   bus.run_until(end_ns, encoder);
-  if (!bus.close()) return fail(fmt::format("cannot write {}", file.string()));
-  return {};
+  return log->close();
 }
 
 /// Writes lidar.pcap and what it has shown. Returns the time of its end.
