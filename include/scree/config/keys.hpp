@@ -131,6 +131,11 @@ void for_each_key(AnySettings& settings, Visit&& visit) {
   table = "encoder";
   auto& encoder = settings.encoder;
   key("interface", encoder.interface, "", 0, 0, "SocketCAN interface of the wheel encoder");
+  key("dbc", encoder.dbc, "", 0, 0,
+      "DBC file that says where the signal lies, beside this file; empty: the keys can_id to "
+      "signed "
+      "say it");
+  key("signal", encoder.signal, "", 0, 0, "its signal there: MESSAGE.SIGNAL");
   key("can_id", encoder.can_id, "", 0, 0x1FFFFFFF,
       "identifier of its frame; above 0x7FF: an extended (29-bit) one");
   key("start_bit", encoder.start_bit, "", 0, 511,
@@ -140,7 +145,15 @@ void for_each_key(AnySettings& settings, Visit&& visit) {
   key("signed", encoder.is_signed, "", 0, 0, "whether the signal is two's complement");
   key("kind", encoder.kind, "", 0, 0,
       "counter wraps at its length; speed is metres per second after scaling");
-  key("scale", encoder.scale, "m or m/s", -1e6, 1e6, "metres per count, or m/s per unit");
+  key("scale", encoder.scale, "m or m/s", -1e6, 1e6,
+      "metres per count, or m/s per unit; with a DBC file per unit of its physical value: 0.277778 "
+      "for km/h; below zero where the wheel counts backwards");
+  key("max_speed", encoder.max_speed, "m/s", 0.1, 200,
+      "readings that ask for a faster wheel are refused, and counted");
+  key("max_acceleration", encoder.max_acceleration, "m/s^2", 0.1, 1000,
+      "the same for a wheel that gains or loses speed faster; it spins up and is blocked faster "
+      "than "
+      "the robot, so leave room");
 
   for_each_detect_key("detect.cloud", settings.detect_cloud, visit);
   for_each_detect_key("detect.sweep", settings.detect_sweep, visit);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <filesystem>
@@ -91,6 +92,7 @@ struct ImuSettings {
 
 struct EncoderSettings {
   std::string interface = "can0";
+  std::string dbc, signal;
   std::int64_t can_id = 0x1A0;
   int start_bit = 0;
   int length = 32;
@@ -98,6 +100,20 @@ struct EncoderSettings {
   bool is_signed = true;
   EncoderKind kind = EncoderKind::counter;
   double scale = 0.000157;
+  double max_speed = 5.0;
+  double max_acceleration = 10.0;
+
+  // No keys: what only a DBC file says, filled in by encoder::with_dbc().
+  bool is_extended = false;       ///< 29 bits although can_id is not above 0x7FF
+  double factor = 1, offset = 0;  ///< scale multiplies raw * factor + offset
+
+  bool has_extended_id() const { return is_extended || can_id > 0x7FF; }
+  /// Bytes that a frame must have to hold the signal.
+  int frame_bytes() const {
+    if (byte_order == ByteOrder::little_endian) return (start_bit + length + 7) / 8;
+    // In the first byte the signal has the bits from its start downwards, then whole bytes follow.
+    return start_bit / 8 + 1 + std::max(length - start_bit % 8 - 1 + 7, 0) / 8;
+  }
 };
 
 /// The stages of the paper and ours beside them. There is one set for reconstructed clouds and one
