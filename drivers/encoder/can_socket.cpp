@@ -64,7 +64,7 @@ std::optional<CanFrame> CanSocket::receive() {
     }
     counts_.kernel_drops += last_drops_ - drops_before;
     auto frame = frame_of(bytes, static_cast<std::size_t>(message.size));
-    if (!frame) {
+    if (!frame || message.is_truncated) {
       ++counts_.malformed;
       continue;
     }

@@ -155,6 +155,29 @@ void for_each_key(AnySettings& settings, Visit&& visit) {
       "than "
       "the robot, so leave room");
 
+  table = "gpio";
+  auto& gpio = settings.gpio;
+  key("pps", gpio.pps, "", 0, 0,
+      "line on which a GPS receiver's pulse per second arrives, CHIP:LINE as gpiochip0:18, the "
+      "line "
+      "by number or name; empty: none");
+  key("pps_active_low", gpio.pps_active_low, "", 0, 0, "the second begins where its level falls");
+  key("stop", gpio.stop, "", 0, 0,
+      "line that is on while the robot is blind or an obstacle is in the stop zone; empty: none");
+  key("stop_active_low", gpio.stop_active_low, "", 0, 0,
+      "on is the low level: with a pull-down, a broken cable stops the robot too");
+  key("heartbeat", gpio.heartbeat, "", 0, 0,
+      "line that changes with every obstacle list, for a watchdog; empty: none");
+  key("heartbeat_active_low", gpio.heartbeat_active_low, "", 0, 0, "it begins at the high level");
+
+  table = "stop";
+  auto& stop = settings.stop;
+  key("length", stop.length, "m", 0.1, 50,
+      "the stop zone reaches this far ahead of the origin of base: braking distance and the way of "
+      "0.3 s");
+  key("width", stop.width, "m", 0.1, 50, "of the stop zone: the robot's, and room on both sides");
+  key("hold", stop.hold, "s", 0, 60, "the line stays on this long after the reason has gone");
+
   for_each_detect_key("detect.cloud", settings.detect_cloud, visit);
   for_each_detect_key("detect.sweep", settings.detect_sweep, visit);
 

@@ -116,6 +116,17 @@ struct EncoderSettings {
   }
 };
 
+struct GpioSettings {
+  std::string pps, stop, heartbeat;
+  bool pps_active_low = false, stop_active_low = false, heartbeat_active_low = false;
+};
+
+struct StopSettings {
+  double length = 2.0;
+  double width = 1.0;
+  double hold = 0.5;
+};
+
 /// The stages of the paper and ours beside them. There is one set for reconstructed clouds and one
 /// for single sweeps, because every length follows the density of the points.
 struct DetectSettings {
@@ -181,6 +192,8 @@ struct Settings {
   LidarSettings lidar;
   ImuSettings imu;
   EncoderSettings encoder;
+  GpioSettings gpio;
+  StopSettings stop;
   DetectSettings detect_cloud = DetectSettings::for_cloud();
   DetectSettings detect_sweep = DetectSettings::for_sweep();
   LcmSettings lcm;

@@ -133,11 +133,13 @@ TEST_F(CanSocketTest, WhatIsNoFrameIsCounted) {
   too_long.len = 9;
   adapter_.send(&too_long, sizeof too_long);
   adapter_.send(&too_long, 3);
+  const std::vector<std::uint8_t> longer_than_any(100, 0);
+  adapter_.send(longer_than_any.data(), longer_than_any.size());
   adapter_.send(0x1A0, {5});
   const auto frame = socket_.receive();
   ASSERT_TRUE(frame);
   EXPECT_THAT(data_of(*frame), ElementsAre(5));
-  EXPECT_EQ(socket_.counts().malformed, 2U);
+  EXPECT_EQ(socket_.counts().malformed, 3U);
 }
 
 TEST_F(CanSocketTest, ComesBackAfterUnplugging) {
