@@ -1,11 +1,10 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
-#include <fstream>
 #include <span>
 #include <vector>
 
+#include "scree/capture/can_log.hpp"
 #include "scree/capture/pcap_writer.hpp"
 #include "scree/config/settings.hpp"
 #include "scree/core/random.hpp"
@@ -66,13 +65,12 @@ private:
 /// A CAN bus as `candump -L` logs it: the encoder's frames and those of other devices.
 class CanBus {
 public:
-  CanBus(const std::filesystem::path& file, const EncoderSettings& encoder, std::uint64_t seed);
+  /// Keeps a reference to the file.
+  CanBus(CanLogWriter& file, const EncoderSettings& encoder, std::uint64_t seed);
 
   /// Logs all that is sent up to a time.
   void run_until(std::int64_t t_ns, SimulatedEncoder& encoder);
   void start(std::int64_t t_ns, double encoder_rate_hz);
-  /// False when the file could not be written.
-  bool close();
 
 private:
   struct Sender {
@@ -80,7 +78,7 @@ private:
   };
   void log(std::int64_t sent_ns, std::int64_t id, const CanData& data);
 
-  std::ofstream file_;
+  CanLogWriter& file_;
   EncoderSettings encoder_;
   Random random_;
   std::vector<Sender> senders_;  // the first is the encoder

@@ -20,4 +20,7 @@ Result<std::filesystem::path> imu_file(const std::filesystem::path& capture);
 std::optional<std::filesystem::path> settings_file(const std::filesystem::path& capture,
                                                    const std::filesystem::path& given);
 
+/// The CAN log of a capture: the capture itself when it is a file, else can.log in its folder.
+Result<std::filesystem::path> can_file(const std::filesystem::path& capture);
+
 }  // namespace scree
