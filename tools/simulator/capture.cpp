@@ -19,6 +19,11 @@ namespace {
 
 constexpr std::int64_t kStartNs = 1598612520'000000000;  // 28 August 2020, 11:02 UTC
 
+/// Seconds since the capture's begin.
+double since_start(std::int64_t t_ns) {
+  return static_cast<double>(t_ns - kStartNs) * 1e-9;
+}
+
 /// Tells sweeps apart and notes at the end of each what has been seen.
 class Observer {
 public:
@@ -69,7 +74,8 @@ World draw_world(const CaptureSettings& settings) {
   } else {
     // Some recordings begin while the robot drives already.
     const double lead = Random(settings.seed, 0x7AC5).uniform(0.3, 3.5);
-    world.track = draw_track({lead + settings.seconds + 1, settings.speed}, settings.seed);
+    world.track =
+        draw_track({lead + settings.seconds + 1, settings.speed, settings.reverse}, settings.seed);
     world.track_start_ns = kStartNs - static_cast<std::int64_t>(lead * 1e9);
     const auto way = thinned(world.track);
     const double length = 0.25 * static_cast<double>(way.size());
@@ -156,7 +162,9 @@ Result<void> write_imu(const std::filesystem::path& file, const CaptureSettings&
   constexpr std::int64_t kBurstNs = 16'000'000;
   SerialPort port(*pcap, robot.imu.baud, settings.imu_bursts ? kBurstNs : 0, settings.seed);
   greet(port, start);
+  port.corrupt(settings.faults.imu_corruption);
   for (ImuMessage sample = imu.next(); sample.t_ns < end_ns; sample = imu.next()) {
+    if (settings.faults.imu_gap.holds(since_start(sample.t_ns))) continue;
     port.send(sample.t_ns + held_back, mt_data2(sample));
   }
   port.finish();
@@ -168,6 +176,9 @@ Result<void> write_can(const std::filesystem::path& file, const CaptureSettings&
   const SimulatedEncoderSettings drawn = draw_encoder(settings);
   SimulatedEncoder encoder(motion, robot.encoder, drawn, settings.seed);
   CanBus bus(file, robot.encoder, settings.seed);
+  bus.lose_encoder([gap = settings.faults.encoder_gap](std::int64_t t_ns) {
+    return gap.holds(since_start(t_ns));
+  });
   bus.start(kStartNs - 50'000'000, drawn.rate_hz);
   bus.run_until(end_ns, encoder);
   if (!bus.close()) return fail(fmt::format("cannot write {}", file.string()));
@@ -183,7 +194,7 @@ Result<std::int64_t> write_lidar(const std::filesystem::path& file, const Captur
   const RayCaster caster(terrain);
   SimulatedLidar lidar(terrain, caster, draw_lidar(settings, robot.lidar), motion,
                        robot.lidar.mount(), kStartNs, settings.seed);
-  Network network(*pcap, robot.lidar, settings.packet_loss, settings.seed);
+  Network network(*pcap, robot.lidar, settings.faults.packet_loss, settings.seed);
   Observer observer(terrain, motion, truth);
   // The packet that begins the turn after the last one is there too, so that the last sweep ends.
   const double turns = std::max(std::round(settings.seconds * settings.rate_hz), 1.0);
