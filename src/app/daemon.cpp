@@ -72,7 +72,7 @@ public:
   }
 
   static std::size_t max_obstacles(const Settings& settings) {
-    return static_cast<std::size_t>(settings.detect_sweep.max_obstacles);
+    return static_cast<std::size_t>(settings.max_obstacles());
   }
 
 private:

@@ -15,48 +15,63 @@ Result<Detector> make_detector(const DetectSettings& settings,
 
 Result<Pipeline> Pipeline::make(const Settings& settings,
                                 const std::filesystem::path& config_folder) {
-  auto detector = make_detector(settings.detect_sweep, config_folder);
-  if (!detector) return tl::make_unexpected(detector.error());
-  return Pipeline(settings, *std::move(detector));
+  auto map_detector = make_detector(settings.detect_map, config_folder);
+  if (!map_detector) return tl::make_unexpected(map_detector.error());
+  auto sweep_detector = make_detector(settings.detect_sweep, config_folder);
+  if (!sweep_detector) return tl::make_unexpected(sweep_detector.error());
+  return Pipeline(settings, *std::move(map_detector), *std::move(sweep_detector));
 }
 
-Pipeline::Pipeline(const Settings& settings, Detector detector)
+Pipeline::Pipeline(const Settings& settings, Detector map_detector, Detector sweep_detector)
     : lidar_(settings.lidar),
-      ground_(static_cast<std::size_t>(settings.detect_sweep.max_points)),
-      detector_(std::move(detector)),
-      list_(static_cast<std::size_t>(settings.detect_sweep.max_obstacles)) {}
+      sensors_(std::make_unique<SyncBuffer>()),
+      mapper_(std::make_unique<Mapper>(settings)),
+      map_detector_(std::move(map_detector)),
+      sweep_detector_(std::move(sweep_detector)),
+      tracker_(settings.track, static_cast<std::size_t>(settings.detect_map.max_obstacles)),
+      sweep_(static_cast<std::size_t>(settings.detect_sweep.max_points)),
+      found_(static_cast<std::size_t>(settings.detect_map.max_obstacles)),
+      list_(static_cast<std::size_t>(settings.max_obstacles())) {}
+
+bool Pipeline::is_covered(std::int64_t end_ns) {
+  sensors_->gather();
+  return sensors_->covers(end_ns);
+}
 
 const ObstacleList& Pipeline::process(const Sweep& sweep) {
-  move_to_base(sweep);
+  sensors_->gather();
+  uses_map_ = uses_map_ || sensors_->has_motion();
   list_.stamp_ns = sweep.end_ns;
-  detector_.detect(ground_, list_.obstacles);
+  if (uses_map_) {
+    mapper_->add(sweep, *sensors_);
+    detect_in_map();
+  } else {
+    detect_in_sweep(sweep);
+  }
   return list_;
 }
 
-StageCounts Pipeline::counts() const {
-  StageCounts counts = detector_.counts();
-  counts.input += dropped_;
-  counts.dropped += dropped_;
-  return counts;
+void Pipeline::detect_in_map() {
+  const RollingMap& map = mapper_->map();
+  list_.pose = mapper_->pose();
+  map_detector_.detect(map.cloud(), found_);
+  for (Obstacle& obstacle : found_) obstacle.center += map.origin();
+  tracker_.update(
+      list_.stamp_ns, {found_.data(), found_.size()},
+      [&map](const Eigen::Vector3d& place) { return map.sight(place); }, list_.obstacles);
 }
 
-void Pipeline::move_to_base(const Sweep& sweep) {
-  const Pose mount = lidar_.mount();
-  const Eigen::Matrix3f rotation = mount.rotation.toRotationMatrix().cast<float>();
-  const Eigen::Vector3f translation = mount.translation.cast<float>();
-  const auto nearest = static_cast<float>(lidar_.min_range * lidar_.min_range);
-  const auto farthest = static_cast<float>(lidar_.max_range * lidar_.max_range);
-  ground_.clear();
-  dropped_ = 0;
-  for (std::size_t i = 0; i < sweep.points.size(); ++i) {
-    const Eigen::Vector3f seen(sweep.points.x[i], sweep.points.y[i], sweep.points.z[i]);
-    const float square = seen.squaredNorm();
-    if (square < nearest || square > farthest) continue;
-    const Eigen::Vector3f point = rotation * seen + translation;
-    if (!ground_.push_back(point.x(), point.y(), point.z(), sweep.points.reflectivity[i])) {
-      ++dropped_;
-    }
-  }
+void Pipeline::detect_in_sweep(const Sweep& sweep) {
+  deskew(sweep, lidar_, still_, sweep_);
+  sweep_detector_.detect(sweep_.points, list_.obstacles);
+}
+
+StageCounts Pipeline::counts() const {
+  StageCounts counts = detector().counts();
+  const std::size_t dropped = uses_map_ ? mapper_->sweep().dropped : sweep_.dropped;
+  counts.input += dropped;
+  counts.dropped += dropped;
+  return counts;
 }
 
 }  // namespace scree

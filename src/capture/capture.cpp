@@ -4,14 +4,27 @@ namespace scree {
 
 namespace fs = std::filesystem;
 
-Result<fs::path> lidar_file(const fs::path& capture) {
+namespace {
+
+/// The capture itself when it is a file, else <stem>.pcap or <stem>.pcapng in its folder.
+Result<fs::path> pcap_of(const fs::path& capture, const std::string& stem) {
   std::error_code ignored;
   if (!fs::exists(capture, ignored)) return fail(capture.string() + ": no such file or folder");
   if (!fs::is_directory(capture, ignored)) return capture;
-  for (const char* name : {"lidar.pcap", "lidar.pcapng"}) {
-    if (fs::exists(capture / name, ignored)) return capture / name;
+  for (const char* ending : {".pcap", ".pcapng"}) {
+    if (fs::exists(capture / (stem + ending), ignored)) return capture / (stem + ending);
   }
-  return fail(capture.string() + ": the folder has no lidar.pcap");
+  return fail(capture.string() + ": the folder has no " + stem + ".pcap");
+}
+
+}  // namespace
+
+Result<fs::path> lidar_file(const fs::path& capture) {
+  return pcap_of(capture, "lidar");
+}
+
+Result<fs::path> imu_file(const fs::path& capture) {
+  return pcap_of(capture, "imu");
 }
 
 std::optional<fs::path> settings_file(const fs::path& capture, const fs::path& given) {

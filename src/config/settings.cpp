@@ -27,6 +27,17 @@ DetectSettings DetectSettings::for_cloud() {
   return detect;
 }
 
+DetectSettings DetectSettings::for_map() {
+  DetectSettings detect = for_cloud();
+  detect.max_points = MapSettings().max_voxels;
+  detect.max_edge_points = 1 << 17;
+  detect.max_obstacles = 512;
+  detect.voxel_grid = false;
+  detect.network = "network_map.txt";
+  detect.min_confidence = 0.05;
+  return detect;
+}
+
 DetectSettings DetectSettings::for_sweep() {
   DetectSettings detect;
   detect.max_points = 1 << 17;
@@ -163,9 +174,14 @@ std::optional<std::string> contradiction(const Settings& settings) {
   if (settings.lidar.min_range >= settings.lidar.max_range) {
     return "lidar.min_range must be below lidar.max_range";
   }
-  for (const auto* detect : {&settings.detect_cloud, &settings.detect_sweep}) {
-    const bool is_cloud = detect == &settings.detect_cloud;
-    const std::string table = is_cloud ? "detect.cloud" : "detect.sweep";
+  if (settings.track.disappear > settings.track.appear) {
+    return "track.disappear must not be above track.appear";
+  }
+  const std::pair<const char*, const DetectSettings*> sets[] = {
+      {"detect.cloud", &settings.detect_cloud},
+      {"detect.map", &settings.detect_map},
+      {"detect.sweep", &settings.detect_sweep}};
+  for (const auto& [table, detect] : sets) {
     if (detect->ground_inner >= detect->ground_outer) {
       return fmt::format("{0}.ground_inner must be below {0}.ground_outer", table);
     }

@@ -3,6 +3,9 @@
 #include <CLI/CLI.hpp>
 #include <stdexcept>
 #include <string>
+#include <utility>
+
+#include "scree/core/result.hpp"
 
 namespace scree::cli {
 
@@ -11,6 +14,12 @@ namespace scree::cli {
 struct Failure : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
+/// The value; throws Failure where there is none.
+template <class T>
+T value_or_fail(Result<T> result) {
+  if (!result) throw Failure(result.error().message);
+  return std::move(*result);
+}
 
 // One file a subcommand; each adds itself with its options and its callback, and is called in
 // main.cpp. Only the asked-for result goes to stdout.

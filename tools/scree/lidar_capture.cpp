@@ -16,12 +16,6 @@ using velodyne::kRefusalReasons;
 using velodyne::LidarCounters;
 using velodyne::LidarStream;
 
-template <class T>
-T value_or_fail(Result<T> result) {
-  if (!result) throw Failure(result.error().message);
-  return std::move(*result);
-}
-
 /// The reason that most packets were refused for.
 std::string_view main_refusal(const LidarCounters& counters) {
   const auto most = std::max_element(counters.refused.begin(), counters.refused.end());

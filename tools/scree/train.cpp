@@ -25,8 +25,8 @@ struct Options {
   TrainingSettings learn;
 };
 
-const std::map<std::string, Profile> kProfiles = {{"cloud", Profile::cloud},
-                                                  {"sweep", Profile::sweep}};
+const std::map<std::string, Profile> kProfiles = {
+    {"cloud", Profile::cloud}, {"map", Profile::map}, {"sweep", Profile::sweep}};
 const std::map<std::string, InputForm> kForms = {{"raw", InputForm::raw},
                                                  {"log1p", InputForm::log1p}};
 
@@ -118,8 +118,9 @@ void run(Options options) {
     if (!loaded) throw Failure(loaded.error().message);
     settings = *loaded;
   }
-  const bool is_cloud = options.profile == Profile::cloud;
-  const DetectSettings& detect = is_cloud ? settings.detect_cloud : settings.detect_sweep;
+  const DetectSettings& detect = options.profile == Profile::cloud ? settings.detect_cloud
+                                 : options.profile == Profile::map ? settings.detect_map
+                                                                   : settings.detect_sweep;
   if (options.out.empty()) options.out = "config/" + detect.network;
   options.learn.seed = options.seed;
   options.learn.forms[acute_count] = options.learn.forms[obtuse_count] = options.counts;
@@ -148,7 +149,7 @@ void run(Options options) {
 void add_train(CLI::App& app) {
   auto* command = app.add_subcommand("train", "trains the network on simulated terrain");
   auto options = std::make_shared<Options>();
-  command->add_option("--profile", options->profile, "cloud or sweep")
+  command->add_option("--profile", options->profile, "cloud, map or sweep")
       ->transform(CLI::CheckedTransformer(kProfiles))
       ->default_str("cloud");
   command->add_option("--config", options->config, "the detector's settings, and the lidar's mount")

@@ -1,9 +1,14 @@
 #include "simulator/data_set.hpp"
 
 #include <array>
+#include <atomic>
 #include <cmath>
+#include <mutex>
+#include <thread>
 
 #include "scree/app/pipeline.hpp"
+#include "scree/core/rotation.hpp"
+#include "simulator/drive.hpp"
 #include "simulator/scene.hpp"
 #include "simulator/worlds.hpp"
 
@@ -56,7 +61,9 @@ private:
 class FromSweeps {
 public:
   explicit FromSweeps(const Settings& settings)
-      : lidar_(settings.lidar), pipeline_(settings, Detector(settings.detect_sweep, Network())) {}
+      : lidar_(settings.lidar),
+        pipeline_(settings, Detector(settings.detect_map, Network()),
+                  Detector(settings.detect_sweep, Network())) {}
 
   LabelledClusters operator()(std::uint64_t seed) {
     constexpr std::array kRates = {5.0, 10.0, 10.0, 20.0};
@@ -71,14 +78,78 @@ private:
   Pipeline pipeline_;
 };
 
-template <class From>
-LabelledClusters gather(From from, SeedRange seeds,
-                        const std::function<void(std::size_t)>& progress) {
-  LabelledClusters all;
-  for (std::size_t i = 0; i < seeds.count; ++i) {
-    all += from(seeds.first + i);
-    progress(i + 1);
+/// The features where the pipeline believes them: what its pose is wrong by moves them too.
+std::vector<TerrainFeature> as_believed(const std::vector<TerrainFeature>& features,
+                                        const Pose& truth, const Pose& believed,
+                                        const Eigen::Vector3d& origin) {
+  const double turn = yaw_of(believed.rotation) - yaw_of(truth.rotation);
+  const Eigen::Rotation2Dd rotation(turn);
+  const Eigen::Vector2d shift = (believed.translation - origin).head<2>() -
+                                rotation * Eigen::Vector2d(truth.translation.head<2>());
+  std::vector<TerrainFeature> moved = features;
+  for (TerrainFeature& feature : moved) {
+    for (Eigen::Vector2d& corner : feature.footprint) corner = rotation * corner + shift;
   }
+  return moved;
+}
+
+class FromDrives {
+public:
+  explicit FromDrives(const Settings& settings) : settings_(settings) {}
+
+  LabelledClusters operator()(std::uint64_t seed) {
+    constexpr int kEvery = 5;  // sweeps
+    CaptureSettings drawn;
+    drawn.seed = seed;
+    drawn.scene = kScenes[seed % kScenes.size()];
+    drawn.seconds = 10;
+    drawn.at_rest = seed % 12 == 11;
+    const Drive drive(drawn);
+    settings_.lidar = drive.robot.lidar;
+    settings_.imu = drive.robot.imu;
+    settings_.encoder = drive.robot.encoder;
+    Pipeline pipeline(settings_, Detector(settings_.detect_map, Network()),
+                      Detector(settings_.detect_sweep, Network()));
+    DriveFeed feed(drive);
+    Sweep sweep(static_cast<std::size_t>(settings_.map.max_points));
+    LabelledClusters all;
+    for (int i = 1; feed.next(sweep, pipeline.sensors()); ++i) {
+      const ObstacleList& list = pipeline.process(sweep);
+      if (i % kEvery != 0) continue;
+      const auto features = as_believed(drive.terrain.features(), drive.motion.base(sweep.end_ns),
+                                        list.pose, pipeline.mapper().map().origin());
+      all += label_clusters(pipeline.detector(), features, feed.truth().visible.back().ids);
+    }
+    return all;
+  }
+
+private:
+  Settings settings_;
+};
+
+/// In as many threads as there are processors; the order is that of the seeds all the same.
+template <class From>
+LabelledClusters gather(const Settings& settings, SeedRange seeds,
+                        const std::function<void(std::size_t)>& progress) {
+  std::vector<LabelledClusters> parts(seeds.count);
+  std::atomic<std::size_t> next{0};
+  std::size_t done = 0;
+  std::mutex mutex;
+  const auto work = [&] {
+    From from(settings);
+    for (std::size_t i = next++; i < seeds.count; i = next++) {
+      parts[i] = from(seeds.first + i);
+      const std::scoped_lock lock(mutex);
+      progress(++done);
+    }
+  };
+  {
+    std::vector<std::jthread> threads;
+    const unsigned processors = std::max(std::thread::hardware_concurrency(), 1U);
+    for (unsigned i = 0; i < processors; ++i) threads.emplace_back(work);
+  }
+  LabelledClusters all;
+  for (const LabelledClusters& part : parts) all += part;
   return all;
 }
 
@@ -86,8 +157,15 @@ LabelledClusters gather(From from, SeedRange seeds,
 
 LabelledClusters make_data_set(Profile profile, const Settings& settings, SeedRange seeds,
                                const std::function<void(std::size_t)>& progress) {
-  return profile == Profile::cloud ? gather(FromClouds(settings), seeds, progress)
-                                   : gather(FromSweeps(settings), seeds, progress);
+  switch (profile) {
+    case Profile::cloud:
+      return gather<FromClouds>(settings, seeds, progress);
+    case Profile::map:
+      return gather<FromDrives>(settings, seeds, progress);
+    case Profile::sweep:
+      break;
+  }
+  return gather<FromSweeps>(settings, seeds, progress);
 }
 
 }  // namespace scree

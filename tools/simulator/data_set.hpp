@@ -9,8 +9,8 @@
 
 namespace scree {
 
-/// What the clusters come from: reconstructed clouds or single sweeps.
-enum class Profile : std::uint8_t { cloud, sweep };
+/// What the clusters come from: reconstructed clouds, maps that grow on a drive, or single sweeps.
+enum class Profile : std::uint8_t { cloud, map, sweep };
 
 /// Seeds from `first` on.
 struct SeedRange {
@@ -26,9 +26,10 @@ TerrainSettings varied_terrain(std::uint64_t seed);
 CloudSettings varied_cloud(std::uint64_t seed);
 
 /// Clusters that the detector finds in terrains of these seeds, with their truth. Clouds are
-/// varied_cloud()s of varied_terrain()s; sweeps are one turn at 5, 10 or 20 Hz of the lidar that
-/// `settings` describes, and only obstacles that it shows well enough (see Visibility) are asked
-/// for.
+/// varied_cloud()s of varied_terrain()s; maps are those of the pipeline after every half second of
+/// drives through all scenes, with robots as the simulator draws them; sweeps are one turn at 5, 10
+/// or 20 Hz of the lidar that `settings` describes, and only obstacles that it shows well enough
+/// (see Visibility) are asked for.
 /// @param progress called after each seed with the number done
 LabelledClusters make_data_set(Profile profile, const Settings& settings, SeedRange seeds,
                                const std::function<void(std::size_t)>& progress);

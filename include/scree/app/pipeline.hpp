@@ -1,45 +1,63 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 
 #include "scree/config/settings.hpp"
 #include "scree/core/obstacle.hpp"
-#include "scree/core/point_cloud.hpp"
 #include "scree/core/sweep.hpp"
 #include "scree/detect/detector.hpp"
+#include "scree/detect/tracker.hpp"
+#include "scree/sync/sync_buffer.hpp"
+#include "scree/terrain/mapper.hpp"
 
 namespace scree {
 
-/// From sweeps to obstacle lists: the daemon and `scree detect` both run this. Each sweep is taken
-/// by itself, with the sensor at rest: `odom` is `base`. Memory is taken once, in make().
+/// From sweeps and motion samples to obstacle lists: the daemon and `scree detect` both run this.
+/// Each sweep is added to the map, and obstacles are found in the map. As long as no IMU and no
+/// encoder has said anything, each sweep is taken by itself instead, and `odom` is `base`. Memory
+/// is taken once, in make().
 class Pipeline {
 public:
   /// @param config_folder where a relative name of a weights file is looked for first
   static Result<Pipeline> make(const Settings& settings,
                                const std::filesystem::path& config_folder);
-  /// With a detector made elsewhere, of settings.detect_sweep.
-  Pipeline(const Settings& settings, Detector detector);
+  /// With detectors made elsewhere, of settings.detect_map and settings.detect_sweep.
+  Pipeline(const Settings& settings, Detector map_detector, Detector sweep_detector);
 
+  /// Where the IMU's and the encoder's threads put their samples.
+  SyncBuffer& sensors() { return *sensors_; }
+  /// Takes over what they have put; whether nothing is missing for a sweep that ended then.
+  bool is_covered(std::int64_t end_ns);
   /// @return the list of this sweep; valid until the next call
   const ObstacleList& process(const Sweep& sweep);
 
-  const Detector& detector() const { return detector_; }
-  /// Points of the last sweep in `base`, as the detector got them.
-  const PointCloud& ground() const { return ground_; }
+  /// What found the obstacles of the last list, and in which points.
+  const Detector& detector() const { return uses_map_ ? map_detector_ : sweep_detector_; }
+  const PointCloud& ground() const { return uses_map_ ? mapper_->map().cloud() : sweep_.points; }
+  const Mapper& mapper() const { return *mapper_; }
+  bool uses_map() const { return uses_map_; }
   /// Of the last sweep, as the detector counts; points that did not get to it are dropped ones.
   StageCounts counts() const;
 
 private:
-  void move_to_base(const Sweep& sweep);
+  void detect_in_map();
+  void detect_in_sweep(const Sweep& sweep);
 
   LidarSettings lidar_;
-  PointCloud ground_;
-  std::size_t dropped_ = 0;
-  Detector detector_;
+  std::unique_ptr<SyncBuffer> sensors_;
+  std::unique_ptr<Mapper> mapper_;
+  Detector map_detector_, sweep_detector_;
+  Tracker tracker_;
+  MotionTrack still_;
+  DeskewedSweep sweep_;  // of a robot that stands
+  FixedVector<Obstacle> found_;
   ObstacleList list_;
+  bool uses_map_ = false;
 };
 
-/// A detector with its weights, for clouds (detect.cloud) or sweeps (detect.sweep).
+/// A detector with its weights, for clouds (detect.cloud), the map (detect.map) or sweeps
+/// (detect.sweep).
 Result<Detector> make_detector(const DetectSettings& settings,
                                const std::filesystem::path& config_folder);
 

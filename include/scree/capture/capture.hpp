@@ -11,6 +11,10 @@ namespace scree {
 /// lidar.pcapng in its folder.
 Result<std::filesystem::path> lidar_file(const std::filesystem::path& capture);
 
+/// The IMU's file of a capture: the capture itself when it is a file, else imu.pcap or imu.pcapng in
+/// its folder.
+Result<std::filesystem::path> imu_file(const std::filesystem::path& capture);
+
 /// The configuration that belongs to a capture: `given` when not empty, else scree.toml in the
 /// capture's folder when there is one. Nothing: the defaults.
 std::optional<std::filesystem::path> settings_file(const std::filesystem::path& capture,

@@ -142,8 +142,44 @@ void for_each_key(AnySettings& settings, Visit&& visit) {
       "counter wraps at its length; speed is metres per second after scaling");
   key("scale", encoder.scale, "m or m/s", -1e6, 1e6, "metres per count, or m/s per unit");
 
+  table = "map";
+  auto& map = settings.map;
+  key("wait", map.wait, "s", 0, 1,
+      "a sweep waits this long for the IMU and encoder samples that cover it: longer bears a "
+      "busier "
+      "host, and delays lists while a sensor is slow");
+  key("registration", map.registration, "", 0, 0,
+      "correct the pose by laying each sweep onto the ground seen before; false: dead reckoning "
+      "alone");
+  key("registration_reach", map.registration_reach, "m", 1, 18,
+      "points this far from the robot take part in registration");
+  key("voxel", map.voxel, "m", 0.01, 1, "edge of the map's voxels: larger is faster and coarser");
+  key("reach", map.reach, "m", 2, 100,
+      "the map reaches this far around the robot; what lies beyond is forgotten");
+  key("keep_seconds", map.keep_seconds, "s", 1, 86400,
+      "what was not seen for so long is forgotten: longer keeps more behind corners, and more of "
+      "the "
+      "pose's drift");
+  key("max_points", map.max_points, "points", 1, 1 << 20,
+      "longest sweep; points beyond it are dropped and counted. Sets the memory taken at start");
+  key("max_voxels", map.max_voxels, "voxels", 1024, 1 << 24,
+      "largest map; points without a voxel are dropped and counted. Sets the memory taken at "
+      "start");
+
   for_each_detect_key("detect.cloud", settings.detect_cloud, visit);
+  for_each_detect_key("detect.map", settings.detect_map, visit);
   for_each_detect_key("detect.sweep", settings.detect_sweep, visit);
+
+  table = "track";
+  auto& track = settings.track;
+  key("smoothing", track.smoothing, "", 0.01, 1,
+      "share of the newest answer in an obstacle's confidence: lower flickers less and answers "
+      "later");
+  key("appear", track.appear, "", 0, 1,
+      "an obstacle is published from this smoothed confidence on");
+  key("disappear", track.disappear, "", 0, 1, "... and until it falls below this");
+  key("remember", track.remember, "s", 0, 60,
+      "an obstacle that is not found any more stays this long, unless its place was seen empty");
 
   table = "lcm";
   key("url", settings.lcm.url, "", 0, 0,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <filesystem>
@@ -87,6 +88,12 @@ struct ImuSettings {
   int baud = 921600;
   Eigen::Vector3d rpy_deg{0, 0, 0};
   Eigen::Vector3d translation{0, 0, 0};
+
+  /// `imu` in `base`.
+  Pose mount() const {
+    return {translation,
+            from_roll_pitch_yaw(radians(rpy_deg.x()), radians(rpy_deg.y()), radians(rpy_deg.z()))};
+  }
 };
 
 struct EncoderSettings {
@@ -100,8 +107,29 @@ struct EncoderSettings {
   double scale = 0.000157;
 };
 
-/// The stages of the paper and ours beside them. There is one set for reconstructed clouds and one
-/// for single sweeps, because every length follows the density of the points.
+/// The ground put together of many sweeps while driving.
+struct MapSettings {
+  double wait = 0.05;
+  bool registration = true;
+  double registration_reach = 15;
+  double voxel = 0.05;
+  double reach = 12;
+  double keep_seconds = 60;
+  int max_points = 1 << 16;
+  int max_voxels = 1 << 19;
+};
+
+/// Obstacles followed from list to list.
+struct TrackingSettings {
+  double smoothing = 0.4;
+  double appear = 0.5;
+  double disappear = 0.35;
+  double remember = 1.0;
+};
+
+/// The stages of the paper and ours beside them. There is one set for reconstructed clouds, one for
+/// the map that grows while driving, and one for single sweeps, because every length follows the
+/// density of the points.
 struct DetectSettings {
   int max_points = 1 << 20;
   int max_edge_points = 1 << 18;
@@ -154,6 +182,7 @@ struct DetectSettings {
   /// The method as the paper has it, on clouds as dense as the paper's: the defaults above.
   static DetectSettings for_paper() { return {}; }
   static DetectSettings for_cloud();
+  static DetectSettings for_map();
   static DetectSettings for_sweep();
 };
 
@@ -166,8 +195,16 @@ struct Settings {
   ImuSettings imu;
   EncoderSettings encoder;
   DetectSettings detect_cloud = DetectSettings::for_cloud();
+  DetectSettings detect_map = DetectSettings::for_map();
   DetectSettings detect_sweep = DetectSettings::for_sweep();
+  MapSettings map;
+  TrackingSettings track;
   LcmSettings lcm;
+
+  /// Of the longest list that is published.
+  int max_obstacles() const {
+    return std::max(detect_map.max_obstacles, detect_sweep.max_obstacles);
+  }
 };
 
 /// Reads a TOML file over the defaults. The error names file, line, key and what is accepted.

@@ -3,16 +3,10 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "scree/core/floor_to_cell.hpp"
 #include "scree/detect/key_sort.hpp"
 
 namespace scree {
-
-/// floor() of a coordinate in cells, without the call that generic x86-64 makes of std::floor.
-/// @pre |value| < 2^31
-inline std::int32_t floor_to_cell(float value) {
-  const auto truncated = static_cast<std::int32_t>(value);
-  return truncated - (value < static_cast<float>(truncated) ? 1 : 0);
-}
 
 /// Metres from the origin, either way, within which the cells of an axis can be told apart when
 /// `axes` of them share a 64-bit word with the index of one of `capacity` points.

@@ -10,7 +10,8 @@ namespace scree {
 namespace {
 
 Pipeline pipeline_of(const Settings& settings) {
-  return {settings, Detector(settings.detect_sweep, Network())};
+  return {settings, Detector(settings.detect_map, Network()),
+          Detector(settings.detect_sweep, Network())};
 }
 
 Sweep sweep_of(std::initializer_list<Eigen::Vector3f> points) {

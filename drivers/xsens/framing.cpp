@@ -1,0 +1,69 @@
+#include "scree/drivers/xsens/framing.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace scree::xsens {
+namespace {
+
+enum class Verdict : std::uint8_t { whole, incomplete, foreign, checksum, length };
+
+/// What begins with the first of these bytes, of which there is one at least.
+std::pair<Verdict, Message> look_at(Bytes bytes) {
+  if (bytes[0] != kPreamble) return {Verdict::foreign, {}};
+  if (bytes.size() > 1 && bytes[1] != kMasterDevice) return {Verdict::foreign, {}};
+  if (bytes.size() < kShortHeader) return {Verdict::incomplete, {}};
+  const bool extended = bytes[3] == kExtendedLength;
+  const std::size_t header = extended ? kExtendedHeader : kShortHeader;
+  if (bytes.size() < header) return {Verdict::incomplete, {}};
+  const std::size_t length = extended ? read<std::uint16_t>(bytes, kShortHeader) : bytes[3];
+  if (length > kLongestData) return {Verdict::length, {}};
+  const std::size_t size = header + length + 1;
+  if (bytes.size() < size) return {Verdict::incomplete, {}};
+  if (std::accumulate(bytes.begin() + 1, bytes.begin() + static_cast<std::ptrdiff_t>(size), 0U) %
+          0x100U !=
+      0) {
+    return {Verdict::checksum, {}};
+  }
+  return {Verdict::whole,
+          {static_cast<MessageId>(bytes[2]), bytes.subspan(header, length), size, 0}};
+}
+
+}  // namespace
+
+Bytes Framer::hold(Bytes bytes) {
+  std::copy(held_.begin() + static_cast<std::ptrdiff_t>(begin_),
+            held_.begin() + static_cast<std::ptrdiff_t>(end_), held_.begin());
+  end_ -= begin_;
+  begin_ = 0;
+  const std::size_t fitting = std::min(bytes.size(), held_.size() - end_);
+  std::copy_n(bytes.begin(), fitting, held_.begin() + static_cast<std::ptrdiff_t>(end_));
+  end_ += fitting;
+  return bytes.subspan(fitting);
+}
+
+void Framer::skip(std::size_t bytes) {
+  begin_ += bytes;
+  counters_.bytes_skipped += bytes;
+}
+
+Message Framer::next(bool at_end) {
+  while (begin_ < end_) {
+    const Bytes waiting = Bytes(held_).subspan(begin_, end_ - begin_);
+    const auto [verdict, message] = look_at(waiting);
+    if (verdict == Verdict::whole) {
+      begin_ += message.size;
+      ++counters_.messages;
+      return message;
+    }
+    if (verdict == Verdict::incomplete && !at_end) break;
+    if (verdict == Verdict::checksum) ++counters_.checksum;
+    if (verdict == Verdict::length) ++counters_.length;
+    const auto next_preamble = std::find(waiting.begin() + 1, waiting.end(), kPreamble);
+    skip(static_cast<std::size_t>(next_preamble - waiting.begin()));
+  }
+  return {};
+}
+
+}  // namespace scree::xsens

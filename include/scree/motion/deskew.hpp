@@ -1,0 +1,24 @@
+#pragma once
+
+#include "scree/config/settings.hpp"
+#include "scree/core/point_cloud.hpp"
+#include "scree/core/sweep.hpp"
+#include "scree/motion/dead_reckoning.hpp"
+
+namespace scree {
+
+/// A sweep as it would look from where `base` was at its end.
+struct DeskewedSweep {
+  PointCloud points;                     ///< in `base` at the sweep's end
+  FixedVector<Eigen::Vector3f> origins;  ///< the lidar's origin at each point's time, same frame
+  std::size_t dropped = 0;
+
+  explicit DeskewedSweep(std::size_t capacity) : points(capacity), origins(capacity) {}
+};
+
+/// Moves every point of a sweep, in the `lidar` frame, to `base` at the sweep's end by the motion
+/// within it. Leaves out points nearer than min_range and farther than max_range.
+void deskew(const Sweep& sweep, const LidarSettings& lidar, const MotionTrack& track,
+            DeskewedSweep& out);
+
+}  // namespace scree

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "scree/core/pose.hpp"
+#include "scree/motion/dead_reckoning.hpp"
+
+namespace scree {
+
+/// What is known of a pose beyond dead reckoning, as the sum of squares e^T information e + 2
+/// gradient^T e of an error e: position in `odom` (m), then rotation vector in `odom` (rad).
+struct PoseEvidence {
+  Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::Matrix<double, 6, 1> gradient = Eigen::Matrix<double, 6, 1>::Zero();
+};
+
+/// The pose of `base` in `odom`, and how well it is known: an iterated extended Kalman filter.
+/// Predicts by dead reckoning; evidence from registration corrects it only in the directions that
+/// it binds. Beside the pose it estimates the encoder's scale and the drift of the IMU's yaw.
+///
+/// Its errors, in order: position in `odom` (3, m), rotation vector in `odom` (3, rad), relative
+/// error of the encoder's scale, drift of the IMU's yaw (rad/s).
+class PoseFilter {
+public:
+  static constexpr int kErrors = 8;
+  using Errors = Eigen::Matrix<double, kErrors, 1>;
+  using Covariance = Eigen::Matrix<double, kErrors, kErrors>;
+
+  PoseFilter();
+
+  /// Starts at the origin with the yaw of `attitude` as zero, or, later, takes a new attitude of
+  /// the `level` frame at the same pose.
+  void predict(const MotionStep& step);
+
+  /// One round of an iterated update: evidence linearised at pose(). Call begin_update() first;
+  /// returns the size of the correction: metres plus radians.
+  void begin_update();
+  double update(const PoseEvidence& evidence);
+  void end_update(const PoseEvidence& evidence);
+
+  const Pose& pose() const { return pose_; }
+  /// Standard deviations.
+  Eigen::Vector3d position_deviation() const {
+    return covariance_.diagonal().head<3>().cwiseSqrt();
+  }
+  Eigen::Vector3d rotation_deviation() const {
+    return covariance_.diagonal().segment<3>(3).cwiseSqrt();
+  }
+  const Covariance& covariance() const { return covariance_; }
+  double scale_error() const { return scale_; }
+  double yaw_drift() const { return drift_; }
+
+private:
+  void apply(const Errors& error);
+
+  Pose pose_;
+  Eigen::Quaterniond level_ = Eigen::Quaterniond::Identity();  // the IMU's level frame in odom
+  Eigen::Quaterniond attitude_ = Eigen::Quaterniond::Identity();
+  double scale_ = 0, drift_ = 0;
+  Covariance covariance_ = Covariance::Zero();
+  // While the IMU is silent.
+  bool knew_attitude_ = false, started_ = false;
+  Eigen::Quaterniond level_before_ = Eigen::Quaterniond::Identity();
+  double tilt_before_ = 0, yaw_before_ = 0;  // variances
+  double silent_s_ = 0;
+  // During an update.
+  Covariance prior_;
+  Errors applied_;
+};
+
+}  // namespace scree

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <atomic>
+#include <boost/lockfree/spsc_queue.hpp>
+#include <cstdint>
+#include <optional>
+
+#include "scree/core/encoder_sample.hpp"
+#include "scree/core/imu_sample.hpp"
+#include "scree/sync/sample_history.hpp"
+
+namespace scree {
+
+/// Attitude of the IMU between, or a little beyond, its samples.
+struct Attitude {
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< see ImuSample::orientation
+  Eigen::Vector3d rate = Eigen::Vector3d::Zero();                ///< rad/s, sensor axes
+};
+
+/// Way of the wheel between, or a little beyond, its samples.
+struct WheelMotion {
+  double distance = 0;  ///< metres, see EncoderSample
+  double speed = 0;     ///< m/s
+};
+
+/// The timestamp-synchronised ring buffer: samples of the IMU and of the encoder come in from one
+/// thread each, and the detector's thread asks for the motion at any instant. Bounded: a producer
+/// whose ring is full drops the new sample, and history forgets the oldest. No locks, and no memory
+/// taken after construction.
+class SyncBuffer {
+public:
+  /// A sensor's two samples around an instant may lie this far apart; and the last one may lie this
+  /// long ago. Beyond it the sensor was silent.
+  static constexpr std::int64_t kSilenceNs = 100'000'000;
+
+  SyncBuffer();
+
+  // Producers, one thread each. False: no room, dropped and counted.
+  bool put(const ImuSample& sample);
+  bool put(const EncoderSample& sample);
+
+  // The consumer.
+
+  /// Takes over what the producers have put. Samples not newer than those before are refused.
+  void gather();
+  /// Whether waiting longer cannot give the motion until t_ns any better: each sensor has a sample
+  /// from then or later, or has been silent for kSilenceNs before it.
+  bool covers(std::int64_t t_ns) const;
+  bool has_motion() const { return !imu_.empty() || !wheel_.empty(); }
+
+  /// Interpolated (slerp), or carried on with the last rate for less than kSilenceNs. Nothing:
+  /// silent then, or too long ago.
+  std::optional<Attitude> attitude_at(std::int64_t t_ns) const;
+  std::optional<WheelMotion> wheel_at(std::int64_t t_ns) const;
+
+  const SampleHistory<ImuSample>& imu() const { return imu_; }
+  const SampleHistory<EncoderSample>& wheel() const { return wheel_; }
+  /// Samples that found no room, and samples out of order. Any thread.
+  std::uint64_t dropped() const { return dropped_.load(std::memory_order_relaxed); }
+  std::uint64_t late() const { return late_; }
+
+private:
+  static constexpr std::size_t kRing = 4096;  // over 4 s at 1 kHz
+  static constexpr std::size_t kHistory = 4096;
+
+  template <class Sample>
+  using Ring = boost::lockfree::spsc_queue<Sample, boost::lockfree::capacity<kRing>>;
+
+  Ring<ImuSample> imu_ring_;
+  Ring<EncoderSample> wheel_ring_;
+  SampleHistory<ImuSample> imu_{kHistory};
+  SampleHistory<EncoderSample> wheel_{kHistory};
+  std::atomic<std::uint64_t> dropped_{0};
+  std::uint64_t late_ = 0;
+};
+
+}  // namespace scree

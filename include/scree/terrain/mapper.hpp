@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+
+#include "scree/config/settings.hpp"
+#include "scree/core/sweep.hpp"
+#include "scree/motion/dead_reckoning.hpp"
+#include "scree/motion/deskew.hpp"
+#include "scree/motion/pose_filter.hpp"
+#include "scree/sync/sync_buffer.hpp"
+#include "scree/terrain/registration.hpp"
+#include "scree/terrain/rolling_map.hpp"
+#include "scree/terrain/surfel_map.hpp"
+
+namespace scree {
+
+/// Rebuilds the ground around the robot: each sweep is moved to its end by dead reckoning, laid
+/// onto the ground seen so far, and added to the rolling map. Memory is taken once, here.
+class Mapper {
+public:
+  explicit Mapper(const Settings& settings);
+
+  /// @param sensors gathered, and covering the sweep as far as they ever will
+  void add(const Sweep& sweep, const SyncBuffer& sensors);
+
+  /// `base` in `odom` at the end of the last sweep.
+  const Pose& pose() const { return filter_.pose(); }
+  const PoseFilter& filter() const { return filter_; }
+  const RollingMap& map() const { return map_; }
+  const MotionStep& step() const { return step_; }
+  const Registration::Outcome& registration() const { return outcome_; }
+  /// The last sweep in `base` at its end.
+  const DeskewedSweep& sweep() const { return sweep_; }
+
+private:
+  void correct();
+  void assume_motion(const Pose& before);
+
+  LidarSettings lidar_;
+  bool registers_;
+  double surfel_reach_;
+  DeadReckoning dead_reckoning_;
+  MotionTrack track_;
+  DeskewedSweep sweep_;
+  PoseFilter filter_;
+  Registration registration_;
+  SurfelMap surfels_;
+  RollingMap map_;
+  MotionStep step_;
+  Registration::Outcome outcome_;
+};
+
+}  // namespace scree

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "scree/motion/deskew.hpp"
+#include "scree/motion/pose_filter.hpp"
+#include "scree/terrain/surfel_map.hpp"
+
+namespace scree {
+
+/// The second step of registration (paper's reference 36, an improved ICP on key points): lays a
+/// sweep onto the surfels around it and corrects the filter's pose by what they bind. Key points
+/// are those on flat (curvature), well-filled (density) surfels, taken evenly from all directions
+/// of their normals; a correspondence counts within a threshold that follows the pose's uncertainty
+/// and the surfel's thickness.
+class Registration {
+public:
+  explicit Registration(std::size_t max_points);
+
+  struct Outcome {
+    int key_points = 0, rounds = 0;
+    double residual = 0;    ///< root of the mean square of the distances, metres
+    double correction = 0;  ///< metres
+  };
+  /// @param sweep in `base`
+  Outcome align(const DeskewedSweep& sweep, SurfelMap& map, PoseFilter& filter);
+
+private:
+  void choose_key_points(const DeskewedSweep& sweep, SurfelMap& map, const Pose& pose);
+
+  FixedVector<Eigen::Vector3f> key_points_;  // in `base`
+  FixedVector<std::uint8_t> bins_;
+};
+
+}  // namespace scree

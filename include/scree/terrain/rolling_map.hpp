@@ -1,0 +1,91 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+
+#include "scree/core/fixed_vector.hpp"
+#include "scree/core/point_cloud.hpp"
+#include "scree/core/pose.hpp"
+#include "scree/core/sight.hpp"
+#include "scree/motion/deskew.hpp"
+#include "scree/terrain/free_space.hpp"
+
+namespace scree {
+
+struct RollingMapSettings {
+  double voxel = 0.05;       ///< edge, metres
+  double reach = 12;         ///< points farther than this from the robot are forgotten, metres
+  double keep_seconds = 60;  ///< ... and those that were not seen for this long
+  std::size_t max_voxels = 1 << 19;
+};
+
+/// The ground around the robot, put together of its sweeps: voxels in `odom`, around the robot,
+/// bounded in number, reach and age. A voxel keeps the mean of its points. Points that no second
+/// sweep confirms stay out of the cloud; what beams pass through again and again is forgotten.
+class RollingMap {
+public:
+  explicit RollingMap(const RollingMapSettings& settings);
+
+  /// Adds a sweep that ended at `end_ns`, seen from `pose` (`base` in `odom`), and forgets.
+  void add(const DeskewedSweep& sweep, const Pose& pose, std::int64_t end_ns);
+  /// Everything is unseen again.
+  void clear();
+
+  /// The confirmed points around the robot, in `odom` shifted by -origin().
+  const PointCloud& cloud() const { return cloud_; }
+  const Eigen::Vector3d& origin() const { return origin_; }
+  /// Of a place in `odom`, to the accuracy of the coarse cells in which free space is kept.
+  Sight sight(const Eigen::Vector3d& place) const;
+
+  std::size_t voxels() const { return voxels_.size(); }
+  std::uint64_t dropped() const { return dropped_; }
+
+private:
+  struct Key {
+    std::int16_t x = 0, y = 0, z = 0;
+    bool operator==(const Key&) const = default;
+    Key beside(int dx, int dy, int dz) const {
+      return {static_cast<std::int16_t>(x + dx), static_cast<std::int16_t>(y + dy),
+              static_cast<std::int16_t>(z + dz)};
+    }
+  };
+  struct Voxel {
+    Key key;
+    std::uint16_t hits = 0;    ///< points, saturating
+    std::uint16_t sweeps = 0;  ///< that hit it, saturating
+    std::uint16_t passed = 0;  ///< beams that went through it since the last hit
+    std::uint32_t last_sweep = 0;
+    std::int64_t seen_ns = 0;                        ///< end of that sweep
+    std::uint32_t slot = 0;                          ///< in the index
+    Eigen::Vector3f mean = Eigen::Vector3f::Zero();  ///< odom - origin
+    float reflectivity = 0;
+  };
+
+  Key key_of(const Eigen::Vector3f& point) const;
+  std::size_t slot_of(const Key& key) const;
+  Voxel* find(const Key& key);
+  const Voxel* find(const Key& key) const;
+  Voxel* find_or_add(const Key& key);
+  void remove(std::size_t index);
+  void recentre(const Pose& pose);
+  void forget(const Pose& pose);
+  void see_through(const DeskewedSweep& sweep, const Eigen::Matrix3f& rotation,
+                   const Eigen::Vector3f& translation);
+  bool is_confirmed(const Voxel& voxel) const;
+  void gather_cloud();
+
+  RollingMapSettings settings_;
+  float inverse_;
+  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
+  FixedVector<Voxel> voxels_;
+  FixedVector<std::uint32_t> index_;  // open addressing; the index of a voxel plus one, 0 is free
+  std::size_t mask_;
+  FreeSpace free_space_;
+  PointCloud cloud_;
+  std::uint32_t sweep_ = 0;
+  std::int64_t end_ns_ = 0;
+  std::uint64_t dropped_ = 0;
+};
+
+}  // namespace scree

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+
+#include "scree/core/fixed_vector.hpp"
+
+namespace scree {
+
+/// A patch of the ground: the plane through the points of one cell.
+struct Surfel {
+  Eigen::Vector3f center = Eigen::Vector3f::Zero();   ///< `odom`, metres
+  Eigen::Vector3f normal = Eigen::Vector3f::UnitZ();  ///< upwards
+  float thickness = 0;  ///< standard deviation of the points about the plane, metres
+  float width = 0;      ///< standard deviation in the plane's narrower direction, metres
+  float points = 0;
+};
+
+/// The ground around the robot as planes in cubic cells, for registration. Bounded: cells lie in a
+/// box that repeats endlessly in all directions, and a cell is taken over by the place that was
+/// seen last. So what the robot leaves behind is forgotten.
+class SurfelMap {
+public:
+  /// @param cell edge, metres
+  explicit SurfelMap(float cell);
+
+  void add(const Eigen::Vector3f& point);
+
+  /// The plane of the cell at a point; null where there is none, or too few or no spread-out
+  /// points.
+  const Surfel* at(const Eigen::Vector3f& point);
+  void clear();
+  float cell() const { return cell_; }
+
+private:
+  // 38 m x 38 m x 19 m at cells of 0.3 m.
+  static constexpr int kWide = 128, kHigh = 64;
+
+  struct Cell {
+    std::int16_t x = 0, y = 0, z = 0;
+    bool is_used = false;
+    bool is_fresh = false;  // the surfel is that of the sums
+    bool is_plane = false;
+    float points = 0;
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();  // from the cell's middle
+    float xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+    Surfel surfel;
+  };
+  struct Place {
+    std::int16_t x, y, z;
+    std::size_t index;
+  };
+  Place place(const Eigen::Vector3f& point) const;
+  Eigen::Vector3f middle(const Cell& cell) const;
+  void fit(Cell& cell) const;
+
+  float cell_, inverse_;
+  FixedVector<Cell> cells_;
+};
+
+}  // namespace scree

@@ -1,0 +1,128 @@
+#include "scree/detect/tracker.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace scree {
+namespace {
+
+/// Of a place from the box of an obstacle in the plane; 0 inside.
+double distance_to_box(const Obstacle& obstacle, const Eigen::Vector3d& place) {
+  const Eigen::Vector2d to = (place - obstacle.center).head<2>();
+  const double cosine = std::cos(obstacle.yaw), sine = std::sin(obstacle.yaw);
+  const double along = std::abs(cosine * to.x() + sine * to.y()) - obstacle.extent.x() / 2;
+  const double across = std::abs(cosine * to.y() - sine * to.x()) - obstacle.extent.y() / 2;
+  return std::hypot(std::max(along, 0.0), std::max(across, 0.0));
+}
+
+/// Whether two boxes may be one obstacle seen twice: the middle of one lies in the other, nearly.
+bool may_be_same(const Obstacle& a, const Obstacle& b) {
+  constexpr double kNear = 0.2;  // metres
+  return std::min(distance_to_box(a, b.center), distance_to_box(b, a.center)) <= kNear;
+}
+
+}  // namespace
+
+Tracker::Tracker(const TrackingSettings& settings, std::size_t max_tracks)
+    : settings_(settings), tracks_(max_tracks), pairs_(16 * max_tracks), track_of_(max_tracks) {}
+
+void Tracker::update(std::int64_t stamp_ns, std::span<const Obstacle> found,
+                     const std::function<Sight(const Eigen::Vector3d&)>& sight,
+                     FixedVector<Obstacle>& obstacles) {
+  if (found.size() > track_of_.capacity()) {
+    dropped_ += found.size() - track_of_.capacity();
+    found = found.first(track_of_.capacity());
+  }
+  match(found);
+  const auto share = static_cast<float>(settings_.smoothing);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (track_of_[i] >= 0) {
+      learn(tracks_[static_cast<std::size_t>(track_of_[i])], &found[i], share);
+      tracks_[static_cast<std::size_t>(track_of_[i])].found_ns = stamp_ns;
+    }
+  }
+  const std::int64_t remembered_ns = static_cast<std::int64_t>(settings_.remember * 1e9);
+  std::size_t kept = 0;
+  for (Track& track : tracks_) {
+    if (!track.is_matched) {
+      const Sight seen = sight(track.obstacle.center);
+      const bool is_empty = seen == Sight::empty;
+      learn(track, nullptr,
+            is_empty                ? std::min(2 * share, 1.0F)
+            : seen == Sight::unseen ? 0
+                                    : share);
+      if (stamp_ns - track.found_ns > remembered_ns) continue;
+    }
+    if (track.confidence() < 0.02F) continue;
+    tracks_[kept++] = track;
+  }
+  tracks_.resize(kept);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (track_of_[i] >= 0) continue;
+    Track track;
+    learn(track, &found[i], share);
+    track.found_ns = stamp_ns;
+    track.obstacle.id = 0;
+    if (!tracks_.push_back(track)) ++dropped_;
+  }
+
+  obstacles.clear();
+  for (Track& track : tracks_) {
+    const float confidence = track.confidence();
+    constexpr std::uint32_t kLeastFound = 2;
+    if (track.is_published) {
+      track.is_published = confidence >= static_cast<float>(settings_.disappear);
+    } else {
+      track.is_published =
+          confidence >= static_cast<float>(settings_.appear) && track.found >= kLeastFound;
+      if (track.is_published && track.obstacle.id == 0) track.obstacle.id = next_id_++;
+    }
+    if (!track.is_published) continue;
+    track.obstacle.confidence = confidence;
+    if (!obstacles.push_back(track.obstacle)) ++dropped_;
+  }
+}
+
+void Tracker::match(std::span<const Obstacle> found) {
+  track_of_.assign(found.size(), -1);
+  pairs_.clear();
+  for (std::size_t t = 0; t < tracks_.size(); ++t) {
+    tracks_[t].is_matched = false;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const bool same_side = (tracks_[t].obstacle.height > 0) == (found[i].height > 0);
+      if (!same_side || !may_be_same(tracks_[t].obstacle, found[i])) continue;
+      const double distance = (tracks_[t].obstacle.center - found[i].center).head<2>().norm();
+      pairs_.push_back({static_cast<float>(distance), static_cast<std::uint32_t>(t),
+                        static_cast<std::uint32_t>(i)});
+    }
+  }
+  std::sort(pairs_.begin(), pairs_.end(), [](const Pair& a, const Pair& b) {
+    if (a.distance != b.distance) return a.distance < b.distance;
+    return a.track != b.track ? a.track < b.track : a.found < b.found;
+  });
+  for (const Pair& pair : pairs_) {
+    if (tracks_[pair.track].is_matched || track_of_[pair.found] >= 0) continue;
+    tracks_[pair.track].is_matched = true;
+    track_of_[pair.found] = static_cast<std::int32_t>(pair.track);
+  }
+}
+
+/// Moves the confidences towards those of what was found, or towards none.
+void Tracker::learn(Track& track, const Obstacle* found, float share) const {
+  const bool is_positive = found != nullptr && found->kind == ObstacleKind::positive;
+  const float confidence = found != nullptr ? found->confidence : 0;
+  // The first answers count alike.
+  const float weight =
+      found != nullptr ? std::max(share, 1.0F / static_cast<float>(track.found + 1)) : share;
+  track.positive += weight * ((is_positive ? confidence : 0) - track.positive);
+  track.negative += weight * ((is_positive ? 0 : confidence) - track.negative);
+  if (found == nullptr) return;
+  const std::int64_t id = track.obstacle.id;
+  track.obstacle = *found;
+  track.obstacle.id = id;
+  track.obstacle.kind =
+      track.negative > track.positive ? ObstacleKind::negative : ObstacleKind::positive;
+  ++track.found;
+}
+
+}  // namespace scree

@@ -1,0 +1,99 @@
+#include "scree/motion/dead_reckoning.hpp"
+
+#include <algorithm>
+
+#include "scree/core/rotation.hpp"
+
+namespace scree {
+
+MotionTrack::Place MotionTrack::at(std::int64_t before_end_ns) const {
+  const float step = static_cast<float>(before_end_ns) / static_cast<float>(step_ns_);
+  const auto index = static_cast<std::size_t>(std::max(step, 0.0F));
+  if (index + 1 >= places_.size()) return places_.back();
+  const float share = step - static_cast<float>(index);
+  const Place& late = places_[index];
+  const Place& early = places_[index + 1];
+  // Between places 5 ms apart the turn is so small that the matrices may be mixed.
+  return {late.rotation + share * (early.rotation - late.rotation),
+          late.translation + share * (early.translation - late.translation)};
+}
+
+void DeadReckoning::go_on(const SyncBuffer& sensors, std::int64_t t_ns) {
+  const double seconds = static_cast<double>(t_ns - now_ns_) * 1e-9;
+  State next = state_;
+  const auto attitude = sensors.attitude_at(t_ns);
+  next.knows_attitude = attitude.has_value();
+  if (attitude) {
+    next.attitude = (attitude->rotation * imu_mount_.conjugate()).normalized();
+    rate_ = imu_mount_ * attitude->rate;
+  } else {
+    next.attitude = (state_.attitude * exponential(rate_ * seconds)).normalized();
+  }
+  const auto wheel = sensors.wheel_at(t_ns);
+  next.knows_distance = wheel.has_value();
+  double moved = speed_ * seconds;
+  if (wheel) {
+    // A wheel that was silent begins anew: what it rolled meanwhile has been guessed already.
+    if (state_.knows_distance)
+      moved = wheel->distance - wheel_;
+    else
+      moved = wheel->speed * seconds;
+    wheel_ = wheel->distance;
+    speed_ = wheel->speed;
+  }
+  const Eigen::Quaterniond middle = state_.knows_attitude || !next.knows_attitude
+                                        ? state_.attitude.slerp(0.5, next.attitude)
+                                        : next.attitude;
+  next.position += middle * Eigen::Vector3d(moved, 0, 0);
+  distance_ += moved;
+  state_ = next;
+  now_ns_ = t_ns;
+}
+
+MotionStep DeadReckoning::advance(const SyncBuffer& sensors, std::int64_t begin_ns,
+                                  std::int64_t end_ns, MotionTrack& track) {
+  if (!started_) {
+    now_ns_ = begin_ns;
+    started_ = true;
+    go_on(sensors, begin_ns);
+  }
+  MotionStep step;
+  step.begin_ns = now_ns_;
+  step.end_ns = end_ns;
+  const Eigen::Quaterniond attitude_before = state_.attitude;
+  state_.position.setZero();
+  distance_ = 0;
+
+  // The last part in equal steps, for the track; a long wait before it in coarser ones.
+  constexpr std::int64_t kStep = MotionTrack::kLongestStepNs;
+  constexpr std::int64_t kTracked = static_cast<std::int64_t>(MotionTrack::kMostSteps) * kStep;
+  while (end_ns - now_ns_ > kTracked) {
+    go_on(sensors, std::min(now_ns_ + 4 * kStep, end_ns - kTracked));
+  }
+  const std::int64_t tracked_ns = std::max<std::int64_t>(end_ns - now_ns_, 0);
+  const std::int64_t steps = std::max<std::int64_t>((tracked_ns + kStep - 1) / kStep, 1);
+  const std::int64_t from_ns = now_ns_;
+  states_.clear();
+  states_.push_back(state_);
+  for (std::int64_t i = 1; i <= steps; ++i) {
+    go_on(sensors, from_ns + tracked_ns * i / steps);
+    states_.push_back(state_);
+  }
+
+  step.attitude = state_.attitude;
+  step.moved = state_.position;
+  step.distance = distance_;
+  step.turned = attitude_before.angularDistance(state_.attitude);
+  step.knows_attitude = state_.knows_attitude;
+  step.knows_distance = state_.knows_distance;
+
+  track.start(std::max<std::int64_t>(tracked_ns / steps, 1));
+  const Eigen::Quaterniond to_base = state_.attitude.conjugate();
+  for (std::size_t i = states_.size(); i-- > 0;) {
+    track.push_back({(to_base * states_[i].attitude).toRotationMatrix().cast<float>(),
+                     (to_base * (states_[i].position - state_.position)).cast<float>()});
+  }
+  return step;
+}
+
+}  // namespace scree

@@ -1,0 +1,162 @@
+#include "scree/motion/pose_filter.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <cmath>
+
+#include "scree/core/rotation.hpp"
+
+namespace scree {
+namespace {
+
+// Standard deviations of what dead reckoning gets wrong.
+constexpr double kTilt = 0.006;        // of the IMU's roll and pitch, rad ...
+constexpr double kTiltSeconds = 20;    // ... which wander this fast
+constexpr double kYawWalk = 0.0005;    // rad in a square root of a second
+constexpr double kDrift = 0.0015;      // of the yaw, rad/s
+constexpr double kDriftWalk = 0.0001;  // rad/s in a square root of a second
+constexpr double kScale = 0.015;       // of the wheel's circumference
+constexpr double kScaleWalk = 0.001;   // in a square root of a metre
+constexpr double kSlip = 0.02;         // along the way, metres in a square root of a metre ...
+constexpr double kSideSlip = 0.006;    // ... across it ...
+constexpr double kHeave = 0.008;       // ... and upwards
+constexpr double kShake = 0.001;       // metres in each direction each step
+constexpr double kSilentTurn = 0.25;   // turning while the IMU is silent, rad/s ...
+constexpr double kSilentTilt = 0.10;   // ... and tilting
+constexpr double kSilentSpeed = 0.4;   // m/s while the encoder is silent, at full speed
+constexpr double kAnotherYaw = 0.5;    // rad: an IMU that comes back with this has restarted
+
+double square(double value) {
+  return value * value;
+}
+
+Eigen::Matrix3d cross(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d matrix;
+  matrix << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return matrix;
+}
+
+/// What turns the vertical of a frame into that of `odom`.
+Eigen::Vector3d tilt_of(const Eigen::Quaterniond& frame) {
+  const Eigen::Vector3d up = frame * Eigen::Vector3d::UnitZ();
+  return {-up.y(), up.x(), 0};
+}
+
+}  // namespace
+
+PoseFilter::PoseFilter() = default;
+
+void PoseFilter::predict(const MotionStep& step) {
+  if (!started_) {
+    started_ = true;
+    level_ = exponential({0, 0, -yaw_of(step.attitude)});
+    attitude_ = step.attitude;
+    pose_ = {Eigen::Vector3d::Zero(), level_ * step.attitude};
+    covariance_.setZero();
+    covariance_(3, 3) = covariance_(4, 4) = square(kTilt);
+    covariance_(6, 6) = square(kScale);
+    covariance_(7, 7) = square(kDrift);
+    knew_attitude_ = step.knows_attitude;
+    if (knew_attitude_) return;
+    covariance_(3, 3) = covariance_(4, 4) = square(0.1);
+    return;
+  }
+  const double seconds = step.seconds();
+  if (knew_attitude_ && !step.knows_attitude) {
+    level_before_ = level_;
+    tilt_before_ = covariance_(3, 3);
+    yaw_before_ = covariance_(5, 5);
+    silent_s_ = 0;
+  }
+  if (!step.knows_attitude) silent_s_ += seconds;
+  const bool is_back = !knew_attitude_ && step.knows_attitude;
+  knew_attitude_ = step.knows_attitude;
+
+  const Eigen::Vector3d moved = level_ * step.moved * (1 + scale_);
+  level_ = exponential({0, 0, drift_ * seconds}) * level_;
+  const double kept = std::exp(-seconds / kTiltSeconds);
+  if (step.knows_attitude) level_ = exponential((1 - kept) * tilt_of(level_)) * level_;
+
+  Covariance transition = Covariance::Identity();
+  transition.block<3, 3>(0, 3) = -cross(moved);
+  transition.block<3, 1>(0, 6) = moved / (1 + scale_);
+  transition(5, 7) = seconds;
+  if (step.knows_attitude) {
+    transition(3, 3) = transition(4, 4) = kept;
+  }
+  covariance_ = transition * covariance_ * transition.transpose();
+
+  const double distance = std::abs(step.distance);
+  const Eigen::Matrix3d to_odom = (level_ * step.attitude).toRotationMatrix();
+  Eigen::Vector3d way(square(kSlip) * distance, square(kSideSlip) * distance,
+                      square(kHeave) * distance);
+  way.array() += square(kShake);
+  if (!step.knows_distance) {
+    way.x() += square(kSilentSpeed * seconds);
+  }
+  covariance_.block<3, 3>(0, 0) += to_odom * way.asDiagonal() * to_odom.transpose();
+  if (step.knows_attitude) {
+    const double wander = square(kTilt) * (1 - square(kept));
+    covariance_(3, 3) += wander;
+    covariance_(4, 4) += wander;
+    covariance_(5, 5) += square(kYawWalk) * seconds;
+  } else {
+    covariance_(3, 3) += square(kSilentTilt * seconds);
+    covariance_(4, 4) += square(kSilentTilt * seconds);
+    covariance_(5, 5) += square(kSilentTurn * seconds);
+  }
+  covariance_(6, 6) += square(kScaleWalk) * distance;
+  covariance_(7, 7) += square(kDriftWalk) * seconds;
+
+  if (is_back) {
+    // The IMU's yaw went on while it was silent, unless it started over.
+    const Eigen::Quaterniond believed = pose_.rotation * (attitude_.conjugate() * attitude_);
+    const double turned = yaw_of(level_before_ * step.attitude) - yaw_of(believed);
+    const bool goes_on = std::abs(std::remainder(turned, 2 * EIGEN_PI)) < kAnotherYaw;
+    level_ =
+        goes_on ? level_before_ : exponential({0, 0, yaw_of(believed) - yaw_of(step.attitude)});
+    covariance_.block<3, kErrors>(3, 0).setZero();
+    covariance_.block<kErrors, 3>(0, 3).setZero();
+    covariance_(3, 3) = covariance_(4, 4) = std::max(tilt_before_, square(kTilt));
+    covariance_(5, 5) = yaw_before_ + square(kDrift * silent_s_);
+    if (!goes_on) covariance_(5, 5) += square(0.05);
+  }
+  attitude_ = step.attitude;
+  pose_.translation += moved;
+  pose_.rotation = (level_ * attitude_).normalized();
+}
+
+void PoseFilter::begin_update() {
+  covariance_ = 0.5 * (covariance_ + covariance_.transpose()).eval();
+  covariance_.diagonal().array() += 1e-12;
+  prior_ = covariance_.inverse();
+  applied_.setZero();
+}
+
+double PoseFilter::update(const PoseEvidence& evidence) {
+  Covariance information = prior_;
+  information.topLeftCorner<6, 6>() += evidence.information;
+  Errors gradient = prior_ * applied_;
+  gradient.head<6>() += evidence.gradient;
+  const Errors correction = -information.llt().solve(gradient);
+  if (!correction.allFinite()) return 0;
+  apply(correction);
+  applied_ += correction;
+  return correction.head<6>().norm();
+}
+
+void PoseFilter::end_update(const PoseEvidence& evidence) {
+  Covariance information = prior_;
+  information.topLeftCorner<6, 6>() += evidence.information;
+  covariance_ = information.inverse();
+}
+
+void PoseFilter::apply(const Errors& error) {
+  pose_.translation += error.head<3>();
+  level_ = (exponential(error.segment<3>(3)) * level_).normalized();
+  pose_.rotation = (level_ * attitude_).normalized();
+  scale_ += error[6];
+  drift_ += error[7];
+}
+
+}  // namespace scree

@@ -1,0 +1,82 @@
+#include "scree/sync/sync_buffer.hpp"
+
+#include "scree/core/rotation.hpp"
+
+namespace scree {
+namespace {
+
+double seconds(std::int64_t ns) {
+  return static_cast<double>(ns) * 1e-9;
+}
+
+}  // namespace
+
+SyncBuffer::SyncBuffer() = default;
+
+bool SyncBuffer::put(const ImuSample& sample) {
+  if (imu_ring_.push(sample)) return true;
+  dropped_.fetch_add(1, std::memory_order_relaxed);
+  return false;
+}
+
+bool SyncBuffer::put(const EncoderSample& sample) {
+  if (wheel_ring_.push(sample)) return true;
+  dropped_.fetch_add(1, std::memory_order_relaxed);
+  return false;
+}
+
+void SyncBuffer::gather() {
+  imu_ring_.consume_all([this](const ImuSample& sample) {
+    if (!sample.has_orientation || !imu_.push(sample)) ++late_;
+  });
+  wheel_ring_.consume_all([this](const EncoderSample& sample) {
+    if (!wheel_.push(sample)) ++late_;
+  });
+}
+
+bool SyncBuffer::covers(std::int64_t t_ns) const {
+  const auto covered = [t_ns](const auto& history) {
+    if (history.empty()) return true;
+    const std::int64_t newest_ns = history.newest().t_ns;
+    return newest_ns >= t_ns || newest_ns < t_ns - kSilenceNs;
+  };
+  return covered(imu_) && covered(wheel_);
+}
+
+std::optional<Attitude> SyncBuffer::attitude_at(std::int64_t t_ns) const {
+  const std::size_t next = imu_.count_until(t_ns);
+  if (next == 0) return std::nullopt;
+  const ImuSample& before = imu_[next - 1];
+  if (next == imu_.size()) {
+    const double beyond = seconds(t_ns - before.t_ns);
+    if (t_ns - before.t_ns > kSilenceNs) return std::nullopt;
+    return Attitude{before.orientation * exponential(before.rate * beyond), before.rate};
+  }
+  const ImuSample& after = imu_[next];
+  if (after.t_ns - before.t_ns > kSilenceNs) return std::nullopt;
+  const double share = seconds(t_ns - before.t_ns) / seconds(after.t_ns - before.t_ns);
+  return Attitude{before.orientation.slerp(share, after.orientation),
+                  before.rate + share * (after.rate - before.rate)};
+}
+
+std::optional<WheelMotion> SyncBuffer::wheel_at(std::int64_t t_ns) const {
+  const std::size_t next = wheel_.count_until(t_ns);
+  if (next == 0) return std::nullopt;
+  const EncoderSample& before = wheel_[next - 1];
+  const auto speed = [](const EncoderSample& a, const EncoderSample& b) {
+    return (b.distance - a.distance) / seconds(b.t_ns - a.t_ns);
+  };
+  if (next == wheel_.size()) {
+    if (t_ns - before.t_ns > kSilenceNs) return std::nullopt;
+    // Over several samples, because a counter's steps are coarse.
+    const std::size_t back = next >= 5 ? next - 5 : 0;
+    const double last = back + 1 < next ? speed(wheel_[back], before) : 0;
+    return WheelMotion{before.distance + last * seconds(t_ns - before.t_ns), last};
+  }
+  const EncoderSample& after = wheel_[next];
+  if (after.t_ns - before.t_ns > kSilenceNs) return std::nullopt;
+  const double between = speed(before, after);
+  return WheelMotion{before.distance + between * seconds(t_ns - before.t_ns), between};
+}
+
+}  // namespace scree

@@ -1,0 +1,71 @@
+#include "scree/terrain/mapper.hpp"
+
+#include "scree/core/rotation.hpp"
+
+namespace scree {
+namespace {
+
+constexpr float kSurfel = 0.3F;  // metres
+
+RollingMapSettings map_settings(const MapSettings& map) {
+  return {.voxel = map.voxel,
+          .reach = map.reach,
+          .keep_seconds = map.keep_seconds,
+          .max_voxels = static_cast<std::size_t>(map.max_voxels)};
+}
+
+}  // namespace
+
+Mapper::Mapper(const Settings& settings)
+    : lidar_(settings.lidar),
+      registers_(settings.map.registration),
+      surfel_reach_(settings.map.registration_reach),
+      dead_reckoning_(settings.imu.mount().rotation),
+      sweep_(static_cast<std::size_t>(settings.map.max_points)),
+      registration_(static_cast<std::size_t>(settings.map.max_points)),
+      surfels_(kSurfel),
+      map_(map_settings(settings.map)) {}
+
+void Mapper::add(const Sweep& sweep, const SyncBuffer& sensors) {
+  const std::int64_t begin_ns = sweep.end_ns + sweep.time_ns[0];
+  const Pose before = filter_.pose();
+  step_ = dead_reckoning_.advance(sensors, begin_ns, sweep.end_ns, track_);
+  filter_.predict(step_);
+  deskew(sweep, lidar_, track_, sweep_);
+  outcome_ = {};
+  if (registers_) correct();
+  assume_motion(before);
+  map_.add(sweep_, filter_.pose(), sweep.end_ns);
+}
+
+void Mapper::correct() {
+  outcome_ = registration_.align(sweep_, surfels_, filter_);
+  const Eigen::Matrix3f rotation = pose().rotation.toRotationMatrix().cast<float>();
+  const Eigen::Vector3f translation = pose().translation.cast<float>();
+  const auto reach = static_cast<float>(surfel_reach_);
+  for (std::size_t i = 0; i < sweep_.points.size(); ++i) {
+    const Eigen::Vector3f seen(sweep_.points.x[i], sweep_.points.y[i], sweep_.points.z[i]);
+    if (seen.squaredNorm() > reach * reach) continue;
+    surfels_.add(rotation * seen + translation);
+  }
+}
+
+/// A silent sensor is stood in for by what registration made of the motion.
+void Mapper::assume_motion(const Pose& before) {
+  constexpr double kTrust = 0.5;  // in the latest step
+  const double seconds = step_.seconds();
+  if (seconds <= 0 || outcome_.key_points == 0) return;
+  if (!step_.knows_distance) {
+    const Eigen::Vector3d ahead = pose().rotation * Eigen::Vector3d::UnitX();
+    const double speed = (pose().translation - before.translation).dot(ahead) / seconds;
+    const double assumed = dead_reckoning_.speed();
+    dead_reckoning_.assume_speed(assumed + kTrust * (speed - assumed));
+  }
+  if (!step_.knows_attitude) {
+    const Eigen::Vector3d rate = logarithm(before.rotation.conjugate() * pose().rotation) / seconds;
+    const Eigen::Vector3d assumed = dead_reckoning_.rate();
+    dead_reckoning_.assume_rate(assumed + kTrust * (rate - assumed));
+  }
+}
+
+}  // namespace scree

@@ -1,0 +1,239 @@
+#include "scree/terrain/rolling_map.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+#include "scree/core/floor_to_cell.hpp"
+
+namespace scree {
+namespace {
+
+/// Beams are followed for the last metres before their hit: there, near the ground, things stand.
+constexpr float kSeenThrough = 4;
+/// Beams that went through a voxel since it was hit last: it has moved away.
+constexpr std::uint16_t kMostPassed = 4;
+
+}  // namespace
+
+RollingMap::RollingMap(const RollingMapSettings& settings)
+    : settings_(settings),
+      inverse_(static_cast<float>(1 / settings.voxel)),
+      voxels_(settings.max_voxels),
+      index_(std::bit_ceil(2 * settings.max_voxels)),
+      mask_(index_.capacity() - 1),
+      cloud_(settings.max_voxels) {
+  clear();
+}
+
+void RollingMap::clear() {
+  voxels_.clear();
+  index_.assign(index_.capacity(), 0);
+  cloud_.clear();
+  free_space_.clear();
+}
+
+RollingMap::Key RollingMap::key_of(const Eigen::Vector3f& point) const {
+  return {static_cast<std::int16_t>(floor_to_cell(point.x() * inverse_)),
+          static_cast<std::int16_t>(floor_to_cell(point.y() * inverse_)),
+          static_cast<std::int16_t>(floor_to_cell(point.z() * inverse_))};
+}
+
+std::size_t RollingMap::slot_of(const Key& key) const {
+  const auto wide = [](std::int16_t value) {
+    return std::uint64_t{static_cast<std::uint16_t>(value)};
+  };
+  std::uint64_t word = wide(key.x) | wide(key.y) << 16U | wide(key.z) << 32U;
+  word *= 0x9E3779B97F4A7C15U;
+  return static_cast<std::size_t>(word >> 32U) & mask_;
+}
+
+const RollingMap::Voxel* RollingMap::find(const Key& key) const {
+  for (std::size_t slot = slot_of(key); index_[slot] != 0; slot = (slot + 1) & mask_) {
+    const Voxel& voxel = voxels_[index_[slot] - 1];
+    if (voxel.key == key) return &voxel;
+  }
+  return nullptr;
+}
+
+RollingMap::Voxel* RollingMap::find(const Key& key) {
+  return const_cast<Voxel*>(std::as_const(*this).find(key));
+}
+
+RollingMap::Voxel* RollingMap::find_or_add(const Key& key) {
+  std::size_t slot = slot_of(key);
+  for (; index_[slot] != 0; slot = (slot + 1) & mask_) {
+    Voxel& voxel = voxels_[index_[slot] - 1];
+    if (voxel.key == key) return &voxel;
+  }
+  if (voxels_.full()) return nullptr;
+  Voxel voxel;
+  voxel.key = key;
+  voxel.slot = static_cast<std::uint32_t>(slot);
+  voxels_.push_back(voxel);
+  index_[slot] = static_cast<std::uint32_t>(voxels_.size());
+  return &voxels_.back();
+}
+
+/// Takes a voxel out; the last one takes its place.
+void RollingMap::remove(std::size_t index) {
+  // What follows in the same run of slots moves up, so that no search ends at the gap.
+  std::size_t gap = voxels_[index].slot;
+  for (std::size_t slot = (gap + 1) & mask_; index_[slot] != 0; slot = (slot + 1) & mask_) {
+    Voxel& other = voxels_[index_[slot] - 1];
+    const std::size_t home = slot_of(other.key);
+    if (((slot - home) & mask_) < ((slot - gap) & mask_)) continue;
+    index_[gap] = index_[slot];
+    other.slot = static_cast<std::uint32_t>(gap);
+    gap = slot;
+  }
+  index_[gap] = 0;
+  if (index + 1 != voxels_.size()) {
+    voxels_[index] = voxels_.back();
+    index_[voxels_[index].slot] = static_cast<std::uint32_t>(index + 1);
+  }
+  voxels_.resize(voxels_.size() - 1);
+}
+
+/// Keeps floats small. A whole number of voxels, and rarely: the raster of later stages stays.
+void RollingMap::recentre(const Pose& pose) {
+  const double step = 256 * settings_.voxel;
+  const Eigen::Vector3d wanted = (pose.translation / step).array().round() * step;
+  const Eigen::Vector3d offset = pose.translation - origin_;
+  if (offset.cwiseAbs().maxCoeff() < step) return;
+  const Eigen::Vector3d shift = wanted - origin_;
+  origin_ = wanted;
+  const auto cells = [&](double metres) {
+    return static_cast<std::int16_t>(std::lround(metres / settings_.voxel));
+  };
+  index_.assign(index_.capacity(), 0);
+  for (std::size_t i = 0; i < voxels_.size(); ++i) {
+    Voxel& voxel = voxels_[i];
+    voxel.mean -= shift.cast<float>();
+    voxel.key.x = static_cast<std::int16_t>(voxel.key.x - cells(shift.x()));
+    voxel.key.y = static_cast<std::int16_t>(voxel.key.y - cells(shift.y()));
+    voxel.key.z = static_cast<std::int16_t>(voxel.key.z - cells(shift.z()));
+    std::size_t slot = slot_of(voxel.key);
+    while (index_[slot] != 0) slot = (slot + 1) & mask_;
+    index_[slot] = static_cast<std::uint32_t>(i + 1);
+    voxel.slot = static_cast<std::uint32_t>(slot);
+  }
+}
+
+void RollingMap::add(const DeskewedSweep& sweep, const Pose& pose, std::int64_t end_ns) {
+  ++sweep_;
+  end_ns_ = end_ns;
+  recentre(pose);
+  const Eigen::Matrix3f rotation = pose.rotation.toRotationMatrix().cast<float>();
+  const Eigen::Vector3f translation = (pose.translation - origin_).cast<float>();
+  const auto reach = static_cast<float>(settings_.reach);
+  constexpr std::uint16_t kMost = 40;
+  for (std::size_t i = 0; i < sweep.points.size(); ++i) {
+    const Eigen::Vector3f seen(sweep.points.x[i], sweep.points.y[i], sweep.points.z[i]);
+    if (seen.squaredNorm() > reach * reach) continue;
+    const Eigen::Vector3f point = rotation * seen + translation;
+    Voxel* const voxel = find_or_add(key_of(point));
+    if (voxel == nullptr) {
+      ++dropped_;
+      continue;
+    }
+    if (voxel->hits < kMost) ++voxel->hits;
+    const float share = 1 / static_cast<float>(voxel->hits);
+    voxel->mean += share * (point - voxel->mean);
+    voxel->reflectivity += share * (sweep.points.reflectivity[i] - voxel->reflectivity);
+    if (voxel->last_sweep != sweep_) ++voxel->sweeps;
+    voxel->last_sweep = sweep_;
+    voxel->seen_ns = end_ns;
+    voxel->passed = 0;
+  }
+  see_through(sweep, rotation, translation);
+  forget(pose);
+  gather_cloud();
+}
+
+/// Follows some of the beams, others each sweep, to shortly before what they hit.
+void RollingMap::see_through(const DeskewedSweep& sweep, const Eigen::Matrix3f& rotation,
+                             const Eigen::Vector3f& translation) {
+  constexpr std::size_t kEvery = 8;
+  constexpr float kClear = 0.3F, kClearShare = 0.08F;  // before the hit: metres, and of the range
+  constexpr float kBeam = 0.6F;                        // of a voxel: this near a beam hits it
+  const auto voxel_size = static_cast<float>(settings_.voxel);
+  const Eigen::Vector3f shift = origin_.cast<float>();
+  const float near = kBeam * voxel_size;
+  for (std::size_t i = sweep_ % kEvery; i < sweep.points.size(); i += kEvery) {
+    const Eigen::Vector3f from = rotation * sweep.origins[i] + translation;
+    const Eigen::Vector3f hit(sweep.points.x[i], sweep.points.y[i], sweep.points.z[i]);
+    const Eigen::Vector3f beam = rotation * (hit - sweep.origins[i]);
+    const float range = beam.norm();
+    const float end = std::min(range - std::max(kClear, kClearShare * range),
+                               static_cast<float>(settings_.reach));
+    const Eigen::Vector3f along = beam / range;
+    for (float way = 0; way < end; way += FreeSpace::kCell) {
+      free_space_.pass(from + way * along + shift, sweep_);
+    }
+    for (float way = std::max(0.0F, end - kSeenThrough); way < end; way += voxel_size) {
+      const Eigen::Vector3f place = from + way * along;
+      Voxel* const voxel = find(key_of(place));
+      if (voxel == nullptr || voxel->last_sweep == sweep_) continue;
+      const Eigen::Vector3f off = voxel->mean - from;
+      if ((off - off.dot(along) * along).squaredNorm() > near * near) continue;
+      ++voxel->passed;
+    }
+  }
+}
+
+Sight RollingMap::sight(const Eigen::Vector3d& place) const {
+  const Key key = key_of((place - origin_).cast<float>());
+  for (int x = -1; x <= 1; ++x) {
+    for (int y = -1; y <= 1; ++y) {
+      for (int z = -1; z <= 1; ++z) {
+        if (find(key.beside(x, y, z)) != nullptr) return Sight::occupied;
+      }
+    }
+  }
+  constexpr std::uint32_t kRecent = 20;  // sweeps
+  const std::uint32_t passed = free_space_.last_passed(place.cast<float>());
+  return passed != 0 && sweep_ - passed < kRecent ? Sight::empty : Sight::unseen;
+}
+
+void RollingMap::forget(const Pose& pose) {
+  const Eigen::Vector3f here = (pose.translation - origin_).cast<float>();
+  const auto reach = static_cast<float>(settings_.reach);
+  const auto kept_ns = static_cast<std::int64_t>(settings_.keep_seconds * 1e9);
+  constexpr std::uint32_t kJudged = 30;  // sweeps after which a point must have been confirmed
+  for (std::size_t i = voxels_.size(); i-- > 0;) {
+    const Voxel& voxel = voxels_[i];
+    const bool is_far = (voxel.mean - here).squaredNorm() > reach * reach;
+    const bool is_gone = voxel.passed >= kMostPassed;
+    const bool is_old = end_ns_ - voxel.seen_ns > kept_ns;
+    const bool is_noise = sweep_ - voxel.last_sweep == kJudged && !is_confirmed(voxel);
+    if (is_far || is_gone || is_old || is_noise) remove(i);
+  }
+}
+
+/// Seen by two sweeps, in the voxel itself or next to it.
+bool RollingMap::is_confirmed(const Voxel& voxel) const {
+  if (voxel.sweeps > 1) return true;
+  for (int x = -1; x <= 1; ++x) {
+    for (int y = -1; y <= 1; ++y) {
+      for (int z = -1; z <= 1; ++z) {
+        if (x == 0 && y == 0 && z == 0) continue;
+        const Voxel* const near = find(voxel.key.beside(x, y, z));
+        if (near == nullptr) continue;
+        if (near->sweeps > 1 || near->last_sweep != voxel.last_sweep) return true;
+      }
+    }
+  }
+  return false;
+}
+
+void RollingMap::gather_cloud() {
+  cloud_.clear();
+  for (const Voxel& voxel : voxels_) {
+    if (!is_confirmed(voxel)) continue;
+    cloud_.push_back(voxel.mean.x(), voxel.mean.y(), voxel.mean.z(), voxel.reflectivity);
+  }
+}
+
+}  // namespace scree

@@ -1,0 +1,106 @@
+#include "scree/terrain/surfel_map.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "scree/core/floor_to_cell.hpp"
+
+namespace scree {
+namespace {
+
+constexpr float kLeastPoints = 8;
+// A cell that has seen this many points lets the old ones fade.
+constexpr float kMostPoints = 300;
+/// A plane's narrower direction spreads at least this much: a single ring is a line.
+constexpr float kLeastWidth = 0.12F;  // of the cell's edge
+
+}  // namespace
+
+SurfelMap::SurfelMap(float cell)
+    : cell_(cell), inverse_(1 / cell), cells_(static_cast<std::size_t>(kWide) * kWide * kHigh) {
+  cells_.resize(cells_.capacity());
+}
+
+void SurfelMap::clear() {
+  for (Cell& cell : cells_) cell.is_used = false;
+}
+
+SurfelMap::Place SurfelMap::place(const Eigen::Vector3f& point) const {
+  const std::int32_t x = floor_to_cell(point.x() * inverse_);
+  const std::int32_t y = floor_to_cell(point.y() * inverse_);
+  const std::int32_t z = floor_to_cell(point.z() * inverse_);
+  const auto wrap = [](std::int32_t value, int size) {
+    return static_cast<std::size_t>(value & (size - 1));
+  };
+  return {static_cast<std::int16_t>(x), static_cast<std::int16_t>(y), static_cast<std::int16_t>(z),
+          (wrap(z, kHigh) * kWide + wrap(y, kWide)) * kWide + wrap(x, kWide)};
+}
+
+Eigen::Vector3f SurfelMap::middle(const Cell& cell) const {
+  return Eigen::Vector3f(static_cast<float>(cell.x) + 0.5F, static_cast<float>(cell.y) + 0.5F,
+                         static_cast<float>(cell.z) + 0.5F) *
+         cell_;
+}
+
+void SurfelMap::add(const Eigen::Vector3f& point) {
+  const Place at = place(point);
+  Cell& cell = cells_[at.index];
+  if (!cell.is_used || cell.x != at.x || cell.y != at.y || cell.z != at.z) {
+    cell = Cell();
+    cell.x = at.x;
+    cell.y = at.y;
+    cell.z = at.z;
+    cell.is_used = true;
+  }
+  if (cell.points > kMostPoints) {
+    constexpr float kFade = 0.5F;
+    cell.points *= kFade;
+    cell.sum *= kFade;
+    for (float* moment : {&cell.xx, &cell.xy, &cell.xz, &cell.yy, &cell.yz, &cell.zz}) {
+      *moment *= kFade;
+    }
+  }
+  const Eigen::Vector3f d = point - middle(cell);
+  ++cell.points;
+  cell.sum += d;
+  cell.xx += d.x() * d.x();
+  cell.xy += d.x() * d.y();
+  cell.xz += d.x() * d.z();
+  cell.yy += d.y() * d.y();
+  cell.yz += d.y() * d.z();
+  cell.zz += d.z() * d.z();
+  cell.is_fresh = false;
+}
+
+const Surfel* SurfelMap::at(const Eigen::Vector3f& point) {
+  const Place at = place(point);
+  Cell& cell = cells_[at.index];
+  if (!cell.is_used || cell.x != at.x || cell.y != at.y || cell.z != at.z) return nullptr;
+  if (!cell.is_fresh) fit(cell);
+  return cell.is_plane ? &cell.surfel : nullptr;
+}
+
+void SurfelMap::fit(Cell& cell) const {
+  cell.is_fresh = true;
+  cell.is_plane = false;
+  if (cell.points < kLeastPoints) return;
+  const Eigen::Vector3f mean = cell.sum / cell.points;
+  Eigen::Matrix3f covariance;
+  covariance << cell.xx, cell.xy, cell.xz, cell.xy, cell.yy, cell.yz, cell.xz, cell.yz, cell.zz;
+  covariance = covariance / cell.points - mean * mean.transpose();
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
+  solver.computeDirect(covariance);
+  const Eigen::Vector3f deviations = solver.eigenvalues().cwiseMax(0).cwiseSqrt();
+  if (deviations[1] < kLeastWidth * cell_ || deviations[0] > 0.5F * deviations[1]) return;
+  Surfel& surfel = cell.surfel;
+  surfel.normal = solver.eigenvectors().col(0);
+  if (surfel.normal.z() < 0) surfel.normal = -surfel.normal;
+  surfel.center = mean + middle(cell);
+  surfel.thickness = deviations[0];
+  surfel.width = deviations[1];
+  surfel.points = cell.points;
+  cell.is_plane = true;
+}
+
+}  // namespace scree

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "scree/capture/pcap_reader.hpp"
+#include "scree/drivers/xsens/imu_stream.hpp"
+
+namespace scree::cli {
+
+/// The IMU's part of a capture, and what was seen of it while it was played.
+class ImuCapture {
+public:
+  /// Throws Failure.
+  explicit ImuCapture(const std::filesystem::path& capture);
+
+  /// Plays the whole file into the stream, as the daemon would read it from the port, and flushes
+  /// the stream.
+  void play(xsens::ImuStream& stream);
+
+  std::uint64_t bytes() const { return bytes_; }
+  /// From the first read to the last.
+  double seconds() const;
+  /// Why the file ended before its end; empty if it did not.
+  const std::string& broken_off() const { return reader_.broken_off(); }
+
+  /// One sentence on why no message was accepted.
+  std::string why_nothing(const xsens::ImuStream& stream) const;
+
+private:
+  std::string name_;
+  PcapReader reader_;
+  std::uint64_t reads_ = 0, bytes_ = 0;
+  std::int64_t first_ns_ = 0, last_ns_ = 0;
+};
+
+/// The end of decoding: what a person should know goes to stderr; throws Failure when no message
+/// was accepted.
+void report_capture(const ImuCapture& capture, const xsens::ImuStream& stream);
+
+}  // namespace scree::cli

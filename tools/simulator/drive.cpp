@@ -1,0 +1,203 @@
+#include "simulator/drive.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "simulator/body.hpp"
+#include "simulator/truth.hpp"
+
+namespace scree {
+namespace {
+
+/// The way of a drive, and the country around it.
+struct World {
+  std::vector<TrackPoint> track;  ///< empty where the robot stands
+  std::int64_t track_start_ns = 0;
+  TerrainSettings terrain;
+};
+
+World draw_world(const CaptureSettings& settings) {
+  constexpr double kObstaclesWithin = 10;  // of the way
+  World world;
+  if (settings.at_rest) {
+    const double area = 4 * kObstaclesWithin * kObstaclesWithin;
+    world.terrain = scene_terrain(settings.scene, area, settings.seed);
+    world.terrain.size = 2 * (kObstaclesWithin + settings.margin);
+    world.terrain.placed_within = kObstaclesWithin;
+    world.terrain.clear_radius = 1.5;
+    world.terrain.level_radius = 0.8;
+  } else {
+    // Some recordings begin while the robot drives already.
+    const double lead = Random(settings.seed, 0x7AC5).uniform(0.3, 3.5);
+    world.track =
+        draw_track({lead + settings.seconds + 1, settings.speed, settings.reverse}, settings.seed);
+    world.track_start_ns = kDriveStartNs - static_cast<std::int64_t>(lead * 1e9);
+    const auto way = thinned(world.track);
+    const double length = 0.25 * static_cast<double>(way.size());
+    double far = 0;
+    for (const Eigen::Vector2d& point : way) far = std::max(far, point.cwiseAbs().maxCoeff());
+    // A way that winds covers less than a straight one of its length.
+    const double reached = 4 * (far + kObstaclesWithin) * (far + kObstaclesWithin);
+    const double area = std::min(2 * kObstaclesWithin * (length + kObstaclesWithin), 0.8 * reached);
+    world.terrain = scene_terrain(settings.scene, area, settings.seed);
+    world.terrain.size = 2 * std::ceil(far + settings.margin);
+    world.terrain.placed_within = kObstaclesWithin;
+    world.terrain.corridor = way;
+    constexpr double kRobotHalfWidth = 0.4;
+    world.terrain.corridor_half_width = 0.6 + kRobotHalfWidth;
+  }
+  world.terrain.cell = settings.cell;
+  return world;
+}
+
+Terrain make_terrain(const CaptureSettings& settings) {
+  return {draw_world(settings).terrain, settings.seed};
+}
+
+Motion make_motion(const CaptureSettings& settings, const Terrain& terrain) {
+  if (settings.at_rest) return Motion(Pose());
+  const World world = draw_world(settings);
+  return follow_ground(world.track, terrain, draw_body(settings.seed), world.track_start_ns,
+                       settings.seed);
+}
+
+}  // namespace
+
+SimulatedLidarSettings draw_lidar(const CaptureSettings& settings, const LidarSettings& mounted) {
+  Random random(settings.seed, 0x11D0);
+  SimulatedLidarSettings lidar;
+  lidar.model = mounted.model;
+  lidar.rate_hz = settings.rate_hz * random.uniform(0.997, 1.003);
+  lidar.start_turn = settings.at_rest ? 0 : random.uniform();
+  lidar.range_noise = random.uniform(0.006, 0.014);
+  lidar.laser_bias = random.uniform(0.003, 0.01);
+  lidar.lost_share = random.uniform(0.001, 0.01);
+  lidar.dust_share = random.chance(0.5) ? 0 : random.uniform(0, 3e-4);
+  lidar.is_locked = settings.pps;
+  if (!settings.pps) {
+    lidar.clock_offset_ns = static_cast<std::int64_t>(random.uniform(0, 3.5e12));
+    lidar.clock_skew = random.uniform(-20e-6, 20e-6);
+  }
+  if (settings.dual) lidar.mode = velodyne::ReturnMode::dual;
+  return lidar;
+}
+
+SimulatedImuSettings draw_imu(const CaptureSettings& settings) {
+  Random random(settings.seed, 0x1A1);
+  SimulatedImuSettings imu;
+  imu.rate_hz = settings.imu_rate_hz;
+  imu.gyro_bias = random.uniform(0.0003, 0.003);
+  imu.gyro_vibration = random.uniform(0.001, 0.015);
+  imu.acceleration_vibration = random.uniform(0.05, 0.7);
+  imu.tilt_error = radians(random.uniform(0.1, 0.4));
+  imu.tilt_correlation = random.uniform(10, 40);
+  imu.yaw_drift = radians(random.uniform(0.005, 0.05));
+  imu.yaw_offset = random.uniform(-3.1, 3.1);
+  imu.clock_skew = random.uniform(-40e-6, 40e-6);
+  return imu;
+}
+
+SimulatedEncoderSettings draw_encoder(const CaptureSettings& settings) {
+  Random random(settings.seed, 0xE4D);
+  SimulatedEncoderSettings encoder;
+  encoder.scale_error = random.uniform(-0.009, 0.009);
+  encoder.slope_slip = random.uniform(0, 0.06);
+  encoder.bursts_a_minute = random.chance(0.3) ? 0 : random.uniform(2, 15);
+  return encoder;
+}
+
+Drive::Drive(const CaptureSettings& drawn)
+    : settings(drawn),
+      robot(draw_robot(drawn.seed)),
+      terrain(make_terrain(drawn)),
+      motion(make_motion(drawn, terrain)) {}
+
+void Observer::watch(const SimulatedLidar& lidar) {
+  for (auto shots = lidar.shots(); !shots.empty(); shots = shots.subspan(velodyne::kLasers)) {
+    const auto firing = shots.first(velodyne::kLasers);
+    if (lidar.turns(firing.front().t_ns) >= turns_ + 1) {
+      visibility_.end_sweep();
+      auto [ids, ignore] = visibility_.asked_for(motion_.base(last_shot_ns_));
+      truth_.visible.push_back({last_shot_ns_, std::move(ids), std::move(ignore)});
+      ++turns_;
+    }
+    visibility_.add(firing);
+    last_shot_ns_ = firing.back().t_ns;
+  }
+}
+
+namespace {
+
+constexpr std::int64_t kEncoderStepNs = 10'000'000;
+
+SimulatedEncoder make_encoder(const Drive& drive) {
+  return {drive.motion, drive.robot.encoder, draw_encoder(drive.settings), drive.settings.seed};
+}
+
+}  // namespace
+
+DriveFeed::DriveFeed(const Drive& drive)
+    : drive_(drive),
+      caster_(drive.terrain),
+      lidar_(drive.terrain, caster_, draw_lidar(drive.settings, drive.robot.lidar), drive.motion,
+             drive.robot.lidar.mount(), kDriveStartNs, drive.settings.seed),
+      imu_(drive.motion, drive.robot.imu_mount(), draw_imu(drive.settings),
+           kDriveStartNs - kEncoderStepNs, drive.settings.seed),
+      encoder_(make_encoder(drive)),
+      observer_(drive.terrain, drive.motion, truth_),
+      next_sample_(imu_.next()),
+      encoder_ns_(kDriveStartNs - kEncoderStepNs) {
+  truth_.obstacles = true_obstacles(drive.terrain);
+}
+
+bool DriveFeed::next(Sweep& sweep, SyncBuffer& sensors) {
+  const double turns = std::round(drive_.settings.seconds * drive_.settings.rate_hz);
+  if (turns_ >= turns) return false;
+  sweep.clear();
+  ++turns_;
+  while (true) {
+    for (; shot_ < lidar_.shots().size(); ++shot_) {
+      const SimulatedShot& shot = lidar_.shots()[shot_];
+      // A firing begins before the turn ends as a whole or not at all.
+      if (shot_ % velodyne::kLasers == 0 && lidar_.turns(shot.t_ns) >= turns_) {
+        for (std::int32_t& time : sweep.time_ns)
+          time -= static_cast<std::int32_t>(last_ns_ - begin_ns_);
+        sweep.end_ns = last_ns_;
+        begin_ns_ = shot.t_ns;
+        feed_until(sweep.end_ns + 2 * kEncoderStepNs, sensors);
+        return true;
+      }
+      last_ns_ = shot.t_ns;
+      if (shot.range <= 0) continue;
+      const Eigen::Vector3f point = lidar_.point_of(shot_).cast<float>();
+      sweep.points.push_back(point.x(), point.y(), point.z(), shot.reflectivity);
+      sweep.time_ns.push_back(static_cast<std::int32_t>(shot.t_ns - begin_ns_));
+    }
+    lidar_.advance();
+    observer_.watch(lidar_);
+    shot_ = 0;
+  }
+}
+
+void DriveFeed::feed_until(std::int64_t t_ns, SyncBuffer& sensors) {
+  for (; next_sample_.t_ns < t_ns; next_sample_ = imu_.next()) {
+    sensors.put(ImuSample{.t_ns = next_sample_.t_ns,
+                          .has_orientation = true,
+                          .has_rate = true,
+                          .has_acceleration = true,
+                          .orientation = next_sample_.orientation,
+                          .rate = next_sample_.rate_of_turn,
+                          .acceleration = next_sample_.acceleration});
+  }
+  const double gain = 1 + draw_encoder(drive_.settings).scale_error;
+  for (; encoder_ns_ < t_ns; encoder_ns_ += kEncoderStepNs) {
+    encoder_.frame(encoder_ns_);
+    EncoderSample sample;
+    sample.t_ns = encoder_ns_;
+    sample.distance = sample.value = encoder_.turned() * gain;
+    sensors.put(sample);
+  }
+}
+
+}  // namespace scree

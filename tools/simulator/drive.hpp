@@ -1,0 +1,100 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "scoring/truth.hpp"
+#include "scree/core/sweep.hpp"
+#include "scree/sync/sync_buffer.hpp"
+#include "simulator/encoder.hpp"
+#include "simulator/faults.hpp"
+#include "simulator/imu.hpp"
+#include "simulator/lidar.hpp"
+#include "simulator/robot.hpp"
+#include "simulator/scene.hpp"
+#include "simulator/visibility.hpp"
+
+namespace scree {
+
+struct CaptureSettings {
+  std::uint64_t seed = 1;
+  Scene scene = Scene::mixed;
+  double seconds = 20;       ///< rounded to whole turns, at least one
+  double speed = 0;          ///< mean while driving, m/s; 0: drawn from 0.4 to 1.6
+  bool reverse = false;      ///< drives backwards for a stretch
+  bool at_rest = false;      ///< the robot stands level at the origin, the ground is level there
+  double rate_hz = 10;       ///< turns of the lidar a second, 5 to 20
+  bool dual = false;         ///< dual returns instead of the strongest
+  bool pps = false;          ///< the lidar's clock is locked to GPS; else it runs free
+  double imu_rate_hz = 100;  ///< 100 to 400
+  bool imu_bursts = false;   ///< a USB adapter hands the IMU's bytes on every 16 ms only
+  double cell = 0.02;        ///< of the terrain's raster, metres
+  double margin = 28;        ///< of terrain beyond the way, metres
+  Faults faults;
+};
+
+/// Host's time at which every drive begins: 28 August 2020, 11:02 UTC.
+inline constexpr std::int64_t kDriveStartNs = 1598612520'000000000;
+
+SimulatedLidarSettings draw_lidar(const CaptureSettings& settings, const LidarSettings& mounted);
+SimulatedImuSettings draw_imu(const CaptureSettings& settings);
+SimulatedEncoderSettings draw_encoder(const CaptureSettings& settings);
+
+/// A robot on its way over a terrain; sensors and terrain are those of the seed.
+struct Drive {
+  explicit Drive(const CaptureSettings& settings);
+
+  CaptureSettings settings;
+  Robot robot;
+  Terrain terrain;
+  Motion motion;
+};
+
+/// Tells sweeps apart and notes at the end of each what has been seen.
+class Observer {
+public:
+  Observer(const Terrain& terrain, const Motion& motion, Truth& truth)
+      : visibility_(terrain), motion_(motion), truth_(truth) {}
+
+  void watch(const SimulatedLidar& lidar);
+  /// Turns finished since the motor's zero.
+  double turns() const { return turns_; }
+
+private:
+  Visibility visibility_;
+  const Motion& motion_;
+  Truth& truth_;
+  double turns_ = 0;
+  std::int64_t last_shot_ns_ = 0;
+};
+
+/// The sensors of a drive without the bytes between: sweeps and samples as good decoders and
+/// perfect clocks would give them.
+class DriveFeed {
+public:
+  /// Keeps a reference to the drive.
+  explicit DriveFeed(const Drive& drive);
+
+  /// Fills the next sweep, and puts the samples that cover it. False when the drive is over.
+  bool next(Sweep& sweep, SyncBuffer& sensors);
+  /// What can be asked for after each sweep so far.
+  const Truth& truth() const { return truth_; }
+
+private:
+  void feed_until(std::int64_t t_ns, SyncBuffer& sensors);
+
+  const Drive& drive_;
+  RayCaster caster_;
+  SimulatedLidar lidar_;
+  SimulatedImu imu_;
+  SimulatedEncoder encoder_;
+  Truth truth_;
+  Observer observer_;
+  ImuMessage next_sample_;
+  std::int64_t encoder_ns_;
+  double turns_ = 0;                               // handed out
+  std::size_t shot_ = SimulatedLidar::kMostShots;  // the next of the packet
+  std::int64_t begin_ns_ = kDriveStartNs, last_ns_ = kDriveStartNs;
+};
+
+}  // namespace scree
