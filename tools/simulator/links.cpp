@@ -37,16 +37,36 @@ void Network::write(std::int64_t sent_ns, int port, std::span<const std::uint8_t
 }
 
 SerialPort::SerialPort(PcapWriter& file, int baud, std::int64_t burst_ns, std::uint64_t seed)
-    : file_(file), byte_ns_(1e10 / baud), burst_ns_(burst_ns), random_(seed, 0x5E41) {}
+    : file_(file),
+      byte_ns_(1e10 / baud),
+      burst_ns_(burst_ns),
+      random_(seed, 0x5E41),
+      disturbances_(seed, 0x5E42) {}
 
 void SerialPort::send(std::int64_t sent_ns, std::span<const std::uint8_t> bytes) {
   read_until(sent_ns);
   line_free_ns_ = std::max(line_free_ns_, sent_ns);
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     const auto taken = static_cast<std::int64_t>(static_cast<double>(i + 1) * byte_ns_);
-    pending_.push_back({line_free_ns_ + taken, bytes[i]});
+    receive(line_free_ns_ + taken, bytes[i]);
   }
-  line_free_ns_ = pending_.back().t_ns;
+  const auto taken = static_cast<std::int64_t>(static_cast<double>(bytes.size()) * byte_ns_);
+  line_free_ns_ += taken;
+}
+
+void SerialPort::receive(std::int64_t t_ns, std::uint8_t byte) {
+  if (!disturbances_.chance(corrupted_share_)) return pending_.push_back({t_ns, byte});
+  switch (disturbances_.index(3)) {
+    case 0:
+      pending_.push_back({t_ns, static_cast<std::uint8_t>(byte ^ 1U << disturbances_.index(8))});
+      break;
+    case 1:
+      pending_.push_back({t_ns, byte});
+      pending_.push_back({t_ns, static_cast<std::uint8_t>(disturbances_.next())});
+      break;
+    default:
+      break;
+  }
 }
 
 void SerialPort::read_until(std::int64_t t_ns) {
@@ -89,7 +109,8 @@ void CanBus::run_until(std::int64_t t_ns, SimulatedEncoder& encoder) {
     Sender& sender = *std::min_element(senders_.begin(), senders_.end(), earlier);
     if (sender.next_ns > t_ns) return;
     if (&sender == &senders_.front()) {
-      log(sender.next_ns, sender.id, encoder.frame(sender.next_ns));
+      const CanData frame = encoder.frame(sender.next_ns);
+      if (!is_lost_(sender.next_ns)) log(sender.next_ns, sender.id, frame);
     } else {
       CanData data{};
       for (std::uint8_t& byte : data) byte = static_cast<std::uint8_t>(random_.next());
