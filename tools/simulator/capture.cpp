@@ -53,16 +53,17 @@ Result<void> write_imu(const std::filesystem::path& file, const Drive& drive, st
 }
 
 Result<void> write_can(const std::filesystem::path& file, const Drive& drive, std::int64_t end_ns) {
+  auto log = CanLogWriter::create(file);
+  if (!log) return tl::make_unexpected(log.error());
   const SimulatedEncoderSettings drawn = draw_encoder(drive.settings);
   SimulatedEncoder encoder(drive.motion, drive.robot.encoder, drawn, drive.settings.seed);
-  CanBus bus(file, drive.robot.encoder, drive.settings.seed);
+  CanBus bus(*log, drive.robot.encoder, drive.settings.seed);
   bus.lose_encoder([gap = drive.settings.faults.encoder_gap](std::int64_t t_ns) {
     return gap.holds(since_start(t_ns));
   });
   bus.start(kDriveStartNs - 50'000'000, drawn.rate_hz);
   bus.run_until(end_ns, encoder);
-  if (!bus.close()) return fail(fmt::format("cannot write {}", file.string()));
-  return {};
+  return log->close();
 }
 
 /// Writes lidar.pcap and what it has shown. Returns the time of its end.

@@ -1,7 +1,5 @@
 #include "simulator/links.hpp"
 
-#include <spdlog/fmt/fmt.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -92,9 +90,8 @@ void SerialPort::read_until(std::int64_t t_ns) {
   }
 }
 
-CanBus::CanBus(const std::filesystem::path& file, const EncoderSettings& encoder,
-               std::uint64_t seed)
-    : file_(file, std::ios::binary), encoder_(encoder), random_(seed, 0xCA4) {}
+CanBus::CanBus(CanLogWriter& file, const EncoderSettings& encoder, std::uint64_t seed)
+    : file_(file), encoder_(encoder), random_(seed, 0xCA4) {}
 
 void CanBus::start(std::int64_t t_ns, double encoder_rate_hz) {
   const auto period = static_cast<std::int64_t>(1e9 / encoder_rate_hz);
@@ -124,18 +121,14 @@ void CanBus::run_until(std::int64_t t_ns, SimulatedEncoder& encoder) {
 }
 
 void CanBus::log(std::int64_t sent_ns, std::int64_t id, const CanData& data) {
-  constexpr std::int64_t kLargestStandardId = 0x7FF;
   logged_us_ = std::max(logged_us_ + 1, (sent_ns + delay_ns(random_) / 2) / 1000);
-  file_ << fmt::format("({}.{:06}) {} ", logged_us_ / 1'000'000, logged_us_ % 1'000'000,
-                       encoder_.interface)
-        << (id > kLargestStandardId ? fmt::format("{:08X}#", id) : fmt::format("{:03X}#", id));
-  for (const std::uint8_t byte : data) file_ << fmt::format("{:02X}", byte);
-  file_ << '\n';
-}
-
-bool CanBus::close() {
-  file_ << std::flush;
-  return static_cast<bool>(file_);
+  CanFrame frame;
+  frame.t_ns = logged_us_ * 1000;
+  frame.id = static_cast<std::uint32_t>(id);
+  frame.is_extended = frame.id > kLargestStandardId;
+  frame.size = static_cast<std::uint8_t>(data.size());
+  std::copy(data.begin(), data.end(), frame.data.begin());
+  file_.write(frame, encoder_.interface);
 }
 
 }  // namespace scree

@@ -1,13 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
-#include <fstream>
 #include <functional>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "scree/capture/can_log.hpp"
 #include "scree/capture/pcap_writer.hpp"
 #include "scree/config/settings.hpp"
 #include "scree/core/random.hpp"
@@ -73,7 +72,8 @@ private:
 /// A CAN bus as `candump -L` logs it: the encoder's frames and those of other devices.
 class CanBus {
 public:
-  CanBus(const std::filesystem::path& file, const EncoderSettings& encoder, std::uint64_t seed);
+  /// Keeps a reference to the file.
+  CanBus(CanLogWriter& file, const EncoderSettings& encoder, std::uint64_t seed);
 
   /// The encoder's frames are not logged where this says so of the time at which they are sent.
   void lose_encoder(std::function<bool(std::int64_t t_ns)> is_lost) {
@@ -82,8 +82,6 @@ public:
   /// Logs all that is sent up to a time.
   void run_until(std::int64_t t_ns, SimulatedEncoder& encoder);
   void start(std::int64_t t_ns, double encoder_rate_hz);
-  /// False when the file could not be written.
-  bool close();
 
 private:
   struct Sender {
@@ -91,7 +89,7 @@ private:
   };
   void log(std::int64_t sent_ns, std::int64_t id, const CanData& data);
 
-  std::ofstream file_;
+  CanLogWriter& file_;
   EncoderSettings encoder_;
   Random random_;
   std::vector<Sender> senders_;  // the first is the encoder

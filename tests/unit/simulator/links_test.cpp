@@ -152,10 +152,12 @@ TEST(CanBus, LogsAsCandumpDoes) {
   layout.can_id = 0x18FF50E5;
   const Motion motion{Pose()};
   SimulatedEncoder encoder(motion, layout, {}, 1);
-  CanBus bus(file, layout, 1);
+  auto log = CanLogWriter::create(file);
+  ASSERT_TRUE(log);
+  CanBus bus(*log, layout, 1);
   bus.start(1'598'601'600'000'000'000, 100);
   bus.run_until(1'598'601'601'000'000'000, encoder);
-  ASSERT_TRUE(bus.close());
+  ASSERT_TRUE(log->close());
   std::ifstream stream(file);
   const auto has_the_form = testing::MatchesRegex(
       R"(\([0-9]{10}\.[0-9]{6}\) can0 ([0-9A-F]{3}|[0-9A-F]{8})#[0-9A-F]{16})");
