@@ -36,10 +36,10 @@ Eigen::Matrix3d cross(const Eigen::Vector3d& v) {
   return matrix;
 }
 
-/// What turns the vertical of a frame into that of `odom`.
+/// What turns the vertical of a frame, nearly upright, into that of `odom`.
 Eigen::Vector3d tilt_of(const Eigen::Quaterniond& frame) {
   const Eigen::Vector3d up = frame * Eigen::Vector3d::UnitZ();
-  return {-up.y(), up.x(), 0};
+  return {up.y(), -up.x(), 0};
 }
 
 }  // namespace
