@@ -30,6 +30,14 @@ bool take(SampleHistory<Sample>& history, const Sample& sample) {
   return history.push(sample);
 }
 
+/// Whether nothing follows the samples before `next`, or only after silence: then the answer must
+/// not depend on whether that has come already.
+template <class Sample>
+bool ends_at(const SampleHistory<Sample>& history, std::size_t next) {
+  return next == history.size() ||
+         history[next].t_ns - history[next - 1].t_ns > SyncBuffer::kSilenceNs;
+}
+
 /// Where the device sends no rate: that between two of its orientations, sensor axes.
 Eigen::Vector3d mean_rate(const ImuSample& before, const ImuSample& after) {
   return logarithm(before.orientation.conjugate() * after.orientation) /
@@ -73,7 +81,7 @@ std::optional<Attitude> SyncBuffer::attitude_at(std::int64_t t_ns) const {
   const std::size_t next = imu_.count_until(t_ns);
   if (next == 0) return std::nullopt;
   const ImuSample& before = imu_[next - 1];
-  if (next == imu_.size()) {
+  if (ends_at(imu_, next)) {
     const double beyond = seconds(t_ns - before.t_ns);
     if (t_ns - before.t_ns > kSilenceNs) return std::nullopt;
     const Eigen::Vector3d rate =
@@ -81,7 +89,6 @@ std::optional<Attitude> SyncBuffer::attitude_at(std::int64_t t_ns) const {
     return Attitude{before.orientation * exponential(rate * beyond), rate};
   }
   const ImuSample& after = imu_[next];
-  if (after.t_ns - before.t_ns > kSilenceNs) return std::nullopt;
   const double share = seconds(t_ns - before.t_ns) / seconds(after.t_ns - before.t_ns);
   const Eigen::Vector3d rate = before.has_rate && after.has_rate
                                    ? before.rate + share * (after.rate - before.rate)
@@ -96,7 +103,7 @@ std::optional<WheelMotion> SyncBuffer::wheel_at(std::int64_t t_ns) const {
   const auto speed = [](const EncoderSample& a, const EncoderSample& b) {
     return (b.distance - a.distance) / seconds(b.t_ns - a.t_ns);
   };
-  if (next == wheel_.size()) {
+  if (ends_at(wheel_, next)) {
     if (t_ns - before.t_ns > kSilenceNs) return std::nullopt;
     // Over several samples, because a counter's steps are coarse.
     const std::size_t back = next >= 5 ? next - 5 : 0;
@@ -104,7 +111,6 @@ std::optional<WheelMotion> SyncBuffer::wheel_at(std::int64_t t_ns) const {
     return WheelMotion{before.distance + last * seconds(t_ns - before.t_ns), last};
   }
   const EncoderSample& after = wheel_[next];
-  if (after.t_ns - before.t_ns > kSilenceNs) return std::nullopt;
   const double between = speed(before, after);
   return WheelMotion{before.distance + between * seconds(t_ns - before.t_ns), between};
 }

@@ -101,8 +101,8 @@ TEST(DeadReckoning, CarriesOnWhereASensorIsSilent) {
   follower.sensors().gather();
   for (int i = 1; i <= 100; ++i) {
     const MotionStep step = follower.sweep(kSweep * i);
-    EXPECT_EQ(step.knows_attitude, i < 30 || i >= 50) << i;
-    EXPECT_EQ(step.knows_distance, i < 60 || i >= 90) << i;
+    EXPECT_EQ(step.knows_attitude, i <= 30 || i >= 50) << i;
+    EXPECT_EQ(step.knows_distance, i <= 60 || i >= 90) << i;
     ASSERT_LT((follower.position() - follower.true_position(kSweep * i)).norm(), 0.01) << i;
   }
 }
