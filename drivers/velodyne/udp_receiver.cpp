@@ -3,10 +3,11 @@
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
-#include <time.h>
 
 #include <cerrno>
 #include <cstring>
+
+#include "scree/core/socket_message.hpp"
 
 namespace scree {
 namespace {
@@ -14,10 +15,6 @@ namespace {
 // Two seconds of a VLP-16 in dual-return mode (1508 packets a second, each 2304 bytes in the
 // kernel).
 constexpr int kWantedBuffer = 8 << 20;
-
-std::int64_t nanoseconds(const timespec& time) {
-  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
-}
 
 std::string reason_of(int error, const std::string& address, int port) {
   const std::string where = address + ":" + std::to_string(port);
@@ -83,45 +80,22 @@ Result<UdpReceiver> UdpReceiver::open(const std::string& address, int port,
 
 std::optional<ReceivedDatagram> UdpReceiver::receive(std::span<std::uint8_t> buffer) {
   while (true) {
-    sockaddr_in sender{};
-    iovec part{buffer.data(), buffer.size()};
-    alignas(cmsghdr) std::uint8_t control[128];
-    msghdr message{};
-    message.msg_name = &sender;
-    message.msg_namelen = sizeof sender;
-    message.msg_iov = &part;
-    message.msg_iovlen = 1;
-    message.msg_control = control;
-    message.msg_controllen = sizeof control;
-    const ssize_t size = recvmsg(socket_.get(), &message, 0);
-    if (size < 0 && errno == EINTR) continue;
-    if (size < 0) {
+    const std::uint32_t drops_before = last_drops_;
+    const SocketMessage message = receive_message(socket_.get(), buffer, last_drops_);
+    if (message.size < 0) {
       if (errno != EAGAIN && errno != EWOULDBLOCK) ++counts_.errors;
       return std::nullopt;
     }
-
+    counts_.kernel_drops += last_drops_ - drops_before;
     ReceivedDatagram datagram;
-    for (cmsghdr* item = CMSG_FIRSTHDR(&message); item != nullptr;
-         item = CMSG_NXTHDR(&message, item)) {
-      if (item->cmsg_level != SOL_SOCKET) continue;
-      if (item->cmsg_type == SCM_TIMESTAMPNS) {
-        timespec arrival;
-        std::memcpy(&arrival, CMSG_DATA(item), sizeof arrival);
-        datagram.arrival_ns = nanoseconds(arrival);
-      } else if (item->cmsg_type == SO_RXQ_OVFL) {
-        std::uint32_t drops;
-        std::memcpy(&drops, CMSG_DATA(item), sizeof drops);
-        counts_.kernel_drops += drops - last_drops_;
-        last_drops_ = drops;
-      }
-    }
-    datagram.sender = ntohl(sender.sin_addr.s_addr);
+    datagram.arrival_ns = message.arrival_ns;
+    datagram.sender = ntohl(message.sender.sin_addr.s_addr);
     if (accepted_sender_ != 0 && datagram.sender != accepted_sender_) {
       ++counts_.foreign;
       continue;
     }
-    datagram.bytes = buffer.first(static_cast<std::size_t>(size));
-    datagram.truncated = (message.msg_flags & MSG_TRUNC) != 0;
+    datagram.bytes = buffer.first(static_cast<std::size_t>(message.size));
+    datagram.truncated = message.is_truncated;
     ++counts_.received;
     counts_.truncated += datagram.truncated ? 1 : 0;
     return datagram;

@@ -32,6 +32,19 @@ std::pair<Verdict, Message> look_at(Bytes bytes) {
 
 }  // namespace
 
+std::size_t write_message(MessageId id, Bytes data, std::span<std::uint8_t> out) {
+  out[0] = kPreamble;
+  out[1] = kMasterDevice;
+  out[2] = static_cast<std::uint8_t>(id);
+  out[3] = static_cast<std::uint8_t>(data.size());
+  std::copy(data.begin(), data.end(), out.begin() + kShortHeader);
+  const std::size_t end = kShortHeader + data.size();
+  const auto sum =
+      std::accumulate(out.begin() + 1, out.begin() + static_cast<std::ptrdiff_t>(end), 0U);
+  out[end] = static_cast<std::uint8_t>(0x100U - sum % 0x100U);
+  return end + 1;
+}
+
 Bytes Framer::hold(Bytes bytes) {
   std::copy(held_.begin() + static_cast<std::ptrdiff_t>(begin_),
             held_.begin() + static_cast<std::ptrdiff_t>(end_), held_.begin());

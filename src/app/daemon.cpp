@@ -30,7 +30,7 @@ struct FoundList {
   explicit FoundList(std::size_t max_obstacles) : list(max_obstacles) {}
 
   ObstacleList list;
-  std::int64_t arrival_ns = 0;   // of the sweep's last packet, host time
+  std::int64_t arrival_ns = 0;   // of the sweep's last packet, monotonic clock
   std::int64_t detector_ns = 0;  // how long the detector worked
   Dropped dropped;
 };
@@ -129,13 +129,14 @@ private:
     report(steady_ns());
   }
 
-  void publish(const FoundList& found) {
+  void publish(FoundList& found) {
+    found.list.stamp_ns = clock_.to_real(found.list.stamp_ns, read_clocks());
     if (publisher_.publish(found.list)) {
       ++health_.lists_published;
     } else {
       ++health_.lists_failed;
     }
-    latency_.record(host_ns() - found.arrival_ns);
+    latency_.record(steady_ns() - found.arrival_ns);
     detector_time_.record(found.detector_ns);
     health_.edge_points_dropped += static_cast<std::int64_t>(found.dropped.edge_points);
     health_.obstacles_dropped += static_cast<std::int64_t>(found.dropped.obstacles);
@@ -157,7 +158,7 @@ private:
 
   void report(std::int64_t now) {
     const double seconds = static_cast<double>(now - last_report_ns_) / 1e9;
-    health_.stamp_ns = host_ns();
+    health_.stamp_ns = wall_ns();
     health_.lidar.packet_rate =
         static_cast<double>(health_.lidar.packets - reported_packets_) / seconds;
     health_.sweeps_waiting = static_cast<std::int32_t>(sweeps_.waiting());
@@ -178,6 +179,7 @@ private:
 
   // Of the publishing thread alone.
   Publisher publisher_;
+  HostClock clock_;
   HealthWatch watch_;
   health_t health_{};
   LatencyHistogram latency_, detector_time_;

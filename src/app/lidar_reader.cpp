@@ -51,8 +51,8 @@ void LidarReader::read_data() {
     status_.sender = datagram->sender;
     status_.datagram_size = static_cast<std::uint32_t>(datagram->bytes.size());
     status_.last_datagram_ns = steady_ns();
-    arrival_ns_ = datagram->arrival_ns;
-    stream_.take(datagram->bytes, datagram->arrival_ns);
+    arrival_ns_ = clock_.to_monotonic(datagram->arrival_ns, read_clocks());
+    stream_.take(datagram->bytes, arrival_ns_);
   }
   status_.lidar = stream_.counters();
   status_.firmware = stream_.firmware();

@@ -12,12 +12,13 @@
 #include "scree/core/sweep.hpp"
 #include "scree/drivers/velodyne/lidar_stream.hpp"
 #include "scree/drivers/velodyne/udp_receiver.hpp"
+#include "scree/sync/host_clock.hpp"
 
 namespace scree {
 
 struct TimedSweep {
   Sweep sweep{velodyne::kSweepCapacity};
-  std::int64_t arrival_ns = 0;  ///< of the packet that completed it, host time
+  std::int64_t arrival_ns = 0;  ///< of the packet that completed it, monotonic clock
 };
 using SweepRing = HandOver<TimedSweep>;
 
@@ -28,8 +29,8 @@ struct LidarPorts {
   static Result<LidarPorts> open(const LidarSettings& settings);
 };
 
-/// Reads the lidar's two ports and hands over each complete sweep. run() is the work of a thread;
-/// it allocates nothing and blocks only in poll().
+/// Reads the lidar's two ports and hands over each complete sweep, on the monotonic clock. run() is
+/// the work of a thread; it allocates nothing and blocks only in poll().
 class LidarReader {
 public:
   LidarReader(const LidarSettings& settings, LidarPorts ports, SweepRing& sweeps);
@@ -48,6 +49,7 @@ private:
 
   LidarPorts ports_;
   SweepRing& sweeps_;
+  HostClock clock_;
   velodyne::LidarStream stream_;
   LidarStatus status_;
   Latest<LidarStatus> shared_status_;

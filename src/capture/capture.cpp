@@ -36,4 +36,12 @@ std::optional<fs::path> settings_file(const fs::path& capture, const fs::path& g
   return std::nullopt;
 }
 
+Result<fs::path> can_file(const fs::path& capture) {
+  std::error_code ignored;
+  if (!fs::exists(capture, ignored)) return fail(capture.string() + ": no such file or folder");
+  if (!fs::is_directory(capture, ignored)) return capture;
+  if (fs::exists(capture / "can.log", ignored)) return capture / "can.log";
+  return fail(capture.string() + ": the folder has no can.log");
+}
+
 }  // namespace scree

@@ -174,6 +174,15 @@ std::optional<std::string> contradiction(const Settings& settings) {
   if (settings.lidar.min_range >= settings.lidar.max_range) {
     return "lidar.min_range must be below lidar.max_range";
   }
+  const EncoderSettings& encoder = settings.encoder;
+  constexpr int kLargestFrame = 64;
+  if (encoder.frame_bytes() > kLargestFrame) {
+    return "encoder.start_bit and encoder.length reach beyond the 64 bytes of the longest frame";
+  }
+  if (encoder.scale == 0) return "encoder.scale must not be 0";
+  if (encoder.dbc.empty() != encoder.signal.empty()) {
+    return "encoder.dbc and encoder.signal belong together, one of them is empty";
+  }
   if (settings.track.disappear > settings.track.appear) {
     return "track.disappear must not be above track.appear";
   }
@@ -239,6 +248,12 @@ Result<Settings> parse_settings(std::string_view toml, const std::string& origin
     Reader reader(root, origin);
     for_each_key(settings, reader);
     reader.refuse_unknown(root, "");
+    // The default is that of one wheel's counts and right for no DBC file.
+    if (!settings.encoder.dbc.empty() && !root.at_path("encoder.scale")) {
+      return fail(origin +
+                  ": encoder.dbc needs encoder.scale beside it, metres (or m/s) per unit of the "
+                  "signal: 0.277778 for km/h");
+    }
     if (reader.error()) return tl::make_unexpected(*reader.error());
   } catch (const toml::parse_error& error) {
     return fail(fmt::format("{}:{}: {}", origin, error.source().begin.line, error.description()));

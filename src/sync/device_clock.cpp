@@ -1,6 +1,8 @@
 #include "scree/sync/device_clock.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstdlib>
 
 namespace scree {
 namespace {
@@ -9,7 +11,7 @@ constexpr std::int64_t kMillisecond = 1'000'000, kSecond = 1'000'000'000;
 
 /// How far the clocks may run apart in a time: 200 ppm.
 constexpr std::int64_t drift(std::int64_t elapsed_ns) {
-  return elapsed_ns / 5000;
+  return std::max<std::int64_t>(elapsed_ns, 0) / 5000;
 }
 
 /// A packet this much before its time has been stamped by another clock than those before it ...
@@ -18,12 +20,37 @@ constexpr std::int64_t kTooEarly = 50 * kMillisecond;
 constexpr std::int64_t kTooLate = kSecond;
 /// A device whose clock went back by more than packets overtake each other has started over.
 constexpr std::int64_t kBackwards = 50 * kMillisecond;
-/// Smaller steps of the host's clock: every packet is late by this much ...
-constexpr std::int64_t kLate = 20 * kMillisecond;
+/// Packets that tell of another clock must agree within this ...
+constexpr std::int64_t kAgreement = 50 * kMillisecond;
+/// ... for this long: longer than what waited in a buffer takes to come in.
+constexpr std::int64_t kCertainAfter = 100 * kMillisecond;
+
+/// Smaller steps of the host's clock: every packet is late by this much, and by eight times the
+/// usual ...
+constexpr std::int64_t kLate = 5 * kMillisecond;
 /// ... for this long.
 constexpr std::int64_t kLateFor = kSecond;
+/// Or every packet is early: two by this much ...
+constexpr std::int64_t kEarly = kMillisecond;
+/// ... within this time.
+constexpr std::int64_t kEarlyWithin = 10 * kSecond;
+
+/// Of so many packets over so long one at least had next to no delay.
+constexpr std::int64_t kEnoughPackets = 20, kLongEnough = kSecond;
+
+/// Host times given out are brought to the best known by one part of this of the time that goes by.
+constexpr std::int64_t kSlewAtFirst = 2, kSlew = 4;
+
+/// The packets' least delay is below this; an edge farther off is not of the device's clock.
+constexpr std::int64_t kEdgeWithin = 50 * kMillisecond;
+constexpr std::int64_t kEdgeHolds = 5 * kSecond;
 
 }  // namespace
+
+const char* name_of(ClockState state) {
+  constexpr std::array kNames = {"unsynchronised", "estimated", "pps_locked"};
+  return kNames[static_cast<std::size_t>(state)];
+}
 
 std::int64_t DeviceClock::wrapped(std::int64_t difference_ns) const {
   const std::int64_t rest = difference_ns % period_ns_;
@@ -32,60 +59,165 @@ std::int64_t DeviceClock::wrapped(std::int64_t difference_ns) const {
   return rest;
 }
 
-void DeviceClock::start_over(std::int64_t device_ns, std::int64_t arrival_ns) {
-  started_ = true;
-  device_ns_ = device_ns;
-  arrival_ns_ = host_ns_ = arrival_ns;
-  least_late_ns_ = 0;
-}
-
 bool DeviceClock::update(std::int64_t device_ns, std::int64_t arrival_ns) {
   if (!started_) {
-    start_over(device_ns, arrival_ns);
+    const ClockSample first{device_ns, arrival_ns - device_ns};
+    start_over(first, first);
     return true;
   }
-  const std::int64_t host_elapsed = arrival_ns - arrival_ns_;
+  const std::int64_t host_elapsed = arrival_ns - last_.host_ns();
   // The device's clock tells how much time went by, but not how many of its periods; the host's
   // knows well enough.
-  const std::int64_t remainder = wrapped(device_ns - device_ns_ - host_elapsed);
-  const std::int64_t device_elapsed = host_elapsed + remainder;
-  const std::int64_t leak = drift(std::max<std::int64_t>(host_elapsed, 0));
-  const std::int64_t expected = host_ns_ + device_elapsed;
-  const std::int64_t residual = arrival_ns - expected;
+  const std::int64_t device_elapsed =
+      host_elapsed + wrapped(device_ns - last_.device_ns - host_elapsed);
+  const std::int64_t now_ns = last_.device_ns + device_elapsed;
+  const ClockSample sample{now_ns, arrival_ns - now_ns};
+  const std::int64_t excess = envelope_.excess_ns(sample), leak = drift(host_elapsed);
 
-  const bool backwards = device_elapsed < -kBackwards;
-  if (backwards || residual < -kTooEarly - leak || residual > kTooLate + leak) {
-    const std::int64_t device_step = wrapped(device_ns - device_ns_);
-    const bool device_steady = device_step >= 0 && device_step < kSecond;
-    ++(device_steady ? host_steps_ : device_restarts_);
-    start_over(device_ns, arrival_ns);
+  const bool is_late = excess > kTooLate + leak, is_backwards = device_elapsed < -kBackwards;
+  if (is_backwards || is_late || excess < -kTooEarly - leak) {
+    return suspect(device_ns, arrival_ns, is_late && !is_backwards);
+  }
+  suspects_.reset();
+  if (is_late_for_long(sample)) {
+    ++host_steps_;
+    start_over(sample, late_row_->least);
     return true;
   }
-  if (residual > kLate) {
-    if (least_late_ns_ == 0) late_since_ns_ = arrival_ns;
-    least_late_ns_ = least_late_ns_ == 0 ? residual : std::min(least_late_ns_, residual);
-    if (arrival_ns - late_since_ns_ > kLateFor) {
-      ++host_steps_;
-      const std::int64_t least = least_late_ns_;
-      start_over(device_ns, arrival_ns);
-      host_ns_ = expected + least;
-      return true;
-    }
+  if (late_row_) {
+    // They tell nothing of the envelope, but would make delays of this size look usual.
+  } else if (excess >= -kEarly - leak) {
+    envelope_.add(sample);
+  } else if (early_ && sample.device_ns - early_->device_ns < kEarlyWithin) {
+    envelope_.reset(*early_);
+    envelope_.add(sample);
+    early_.reset();
   } else {
-    least_late_ns_ = 0;
+    early_ = sample;
   }
-  host_ns_ = std::min(expected + leak, arrival_ns);
-  device_ns_ = device_ns;
-  arrival_ns_ = arrival_ns;
+  take(sample);
   return false;
 }
 
+void DeviceClock::take(const ClockSample& sample) {
+  ++packets_;
+  if (sample.device_ns > last_.device_ns) {
+    last_ = sample;
+    state_ = judge();
+    give_out(sample.device_ns);
+  }
+  anchor_device_ns_ = last_.device_ns;
+  anchor_host_ns_ = last_.device_ns + given_.offset_ns;
+}
+
+bool DeviceClock::is_late_for_long(const ClockSample& sample) {
+  const std::int64_t excess = envelope_.excess_ns(sample);
+  if (excess <= kLate + 8 * envelope_.usual_excess_ns()) {
+    late_row_.reset();
+    return false;
+  }
+  if (!late_row_) late_row_ = {sample.host_ns(), sample};
+  if (excess < envelope_.excess_ns(late_row_->least)) late_row_->least = sample;
+  return sample.host_ns() - late_row_->since_ns > kLateFor;
+}
+
+bool DeviceClock::suspect(std::int64_t device_ns, std::int64_t arrival_ns, bool is_late) {
+  ++implausible_;
+  const auto begin = [&] {
+    suspects_ = {device_ns, arrival_ns, {device_ns, arrival_ns - device_ns}};
+  };
+  if (!suspects_) begin();
+  const std::int64_t elapsed = wrapped(device_ns - suspects_->first_device_ns);
+  const std::int64_t host_elapsed = arrival_ns - suspects_->first_arrival_ns;
+  if (std::abs(elapsed - host_elapsed) > kAgreement + drift(host_elapsed)) begin();
+
+  const std::int64_t now_ns = suspects_->first_device_ns + elapsed;
+  const ClockSample sample{now_ns, arrival_ns - now_ns};
+  if (sample.offset_ns < suspects_->least.offset_ns) suspects_->least = sample;
+  if (arrival_ns - suspects_->first_arrival_ns >= kCertainAfter) {
+    const std::int64_t step = wrapped(suspects_->first_device_ns - last_.device_ns);
+    const bool device_is_steady = step > 0 && step < kSecond;
+    ++(device_is_steady ? host_steps_ : device_restarts_);
+    start_over(sample, suspects_->least);
+    return true;
+  }
+  // What waited in a buffer is late, and its stamps are right all the same.
+  if (!is_late) {
+    anchor_device_ns_ = device_ns;
+    anchor_host_ns_ = arrival_ns;
+  }
+  return false;
+}
+
+void DeviceClock::start_over(const ClockSample& newest, const ClockSample& least) {
+  started_ = true;
+  state_ = ClockState::unsynchronised;
+  last_ = newest;
+  begin_device_ns_ = newest.device_ns;
+  packets_ = 1;
+  envelope_.reset(least);
+  envelope_.add(newest);
+  edges_.clear();
+  suspects_.reset();
+  late_row_.reset();
+  early_.reset();
+  const ClockLine& line = envelope_.line();
+  given_ = {newest.device_ns, line.offset_at(newest.device_ns), line.skew_ppb};
+  anchor_device_ns_ = newest.device_ns;
+  anchor_host_ns_ = newest.device_ns + given_.offset_ns;
+}
+
+void DeviceClock::give_out(std::int64_t device_ns) {
+  const ClockLine line = best_line();
+  const std::int64_t slew = state_ == ClockState::unsynchronised ? kSlewAtFirst : kSlew;
+  const std::int64_t most = (device_ns - given_.device_ns) / slew;
+  const std::int64_t expected = given_.offset_at(device_ns);
+  const std::int64_t change = std::clamp(line.offset_at(device_ns) - expected, -most, most);
+  given_ = {device_ns, expected + change, line.skew_ppb};
+}
+
+ClockState DeviceClock::judge() const {
+  if (state_ == ClockState::unsynchronised) {
+    const bool enough =
+        packets_ >= kEnoughPackets && last_.device_ns - begin_device_ns_ >= kLongEnough;
+    return enough ? ClockState::estimated : ClockState::unsynchronised;
+  }
+  const bool locked = edges_.locked() && last_.host_ns() - last_edge_ns_ < kEdgeHolds;
+  return locked ? ClockState::pps_locked : ClockState::estimated;
+}
+
+ClockLine DeviceClock::best_line() const {
+  const ClockLine& line = envelope_.line();
+  return state_ == ClockState::pps_locked ? edges_.line(line.skew_ppb) : line;
+}
+
+void DeviceClock::pps(std::int64_t host_edge_ns) {
+  if (state_ == ClockState::unsynchronised || period_ns_ % kSecond != 0) return;
+  const ClockLine& line = envelope_.line();
+  const std::int64_t about_ns = host_edge_ns - line.offset_at(last_.device_ns);
+  const std::int64_t second_ns = (about_ns + kSecond / 2) / kSecond * kSecond;
+  const ClockSample edge{second_ns, host_edge_ns - second_ns};
+  if (std::abs(envelope_.excess_ns(edge)) > kEdgeWithin || !edges_.add(edge, line.skew_ppb)) {
+    ++edges_refused_;
+    return;
+  }
+  last_edge_ns_ = host_edge_ns;
+}
+
 std::int64_t DeviceClock::to_host(std::int64_t device_ns) const {
-  return host_ns_ + wrapped(device_ns - device_ns_);
+  const std::int64_t elapsed = wrapped(device_ns - anchor_device_ns_);
+  return anchor_host_ns_ + elapsed + gained_ns(elapsed, given_.skew_ppb);
+}
+
+std::int64_t DeviceClock::accuracy_ns() const {
+  const std::int64_t behind = std::abs(best_line().offset_at(given_.device_ns) - given_.offset_ns);
+  if (state_ == ClockState::pps_locked) return behind + edges_.jitter_ns();
+  const bool is_new = state_ == ClockState::unsynchronised;
+  return behind + std::max(envelope_.accuracy_ns(), is_new ? kLate : 0);
 }
 
 std::int64_t DeviceClock::offset_ns() const {
-  return wrapped(host_ns_ - device_ns_);
+  return wrapped(anchor_host_ns_ - anchor_device_ns_);
 }
 
 }  // namespace scree

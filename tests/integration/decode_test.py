@@ -3,6 +3,7 @@
 import csv
 import json
 import os
+import struct
 import subprocess
 import sys
 import tempfile
@@ -12,6 +13,40 @@ from synthetic_capture import data_packet, write_capture
 
 SCREE = sys.argv[1]
 HEADER = "t_ns,packet,block,channel,azimuth_deg,range_m,reflectivity,x,y,z"
+IMU_HEADER = (
+    "t_ns,packet_counter,sample_time_fine,qw,qx,qy,qz,roll_deg,pitch_deg,yaw_deg,"
+    "wx,wy,wz,ax,ay,az,status"
+)
+
+
+def item(data_id, data):
+    return struct.pack(">HB", data_id, len(data)) + data
+
+
+def xbus(data, message_id=0x36):
+    body = bytes([0xFF, message_id, len(data)]) + data
+    return b"\xfa" + body + bytes([-sum(body) % 256])
+
+
+def imu_message(i):
+    """Double quaternion, float rate, fixed-point acceleration; no angles."""
+    return xbus(
+        item(0x1020, struct.pack(">H", i % 65536))
+        + item(0x1060, struct.pack(">I", 100 * i))
+        + item(0x2013, struct.pack(">4d", 0.6, 0.0, 0.8, 0.0))
+        + item(0x8020, struct.pack(">3f", 0.1, -0.2, 1e-7))
+        + item(0x4021, struct.pack(">3i", 1 << 20, -1, 10 << 20))
+        + item(0xE020, struct.pack(">I", 0x80000003))
+    )
+
+
+def write_imu(path, reads, link_type=147):
+    """Reads of the port, 10 ms apart, as a pcap of nanoseconds."""
+    with open(path, "wb") as file:
+        file.write(struct.pack("<IHHiIII", 0xA1B23C4D, 2, 4, 0, 0, 65535, link_type))
+        for i, data in enumerate(reads):
+            time_ns = 1_600_000_000_000_000_000 + i * 10_000_000
+            file.write(struct.pack("<IIII", *divmod(time_ns, 10**9), len(data), len(data)) + data)
 
 
 class DecodeTest(unittest.TestCase):
@@ -80,6 +115,64 @@ class DecodeTest(unittest.TestCase):
         with open(self.path("sweeps/sweep_000003.pcd"), "rb") as file:
             self.assertIn(b"FIELDS x y z intensity", file.read(200))
 
+    def decoded_imu(self, reads):
+        write_imu(self.path("imu.pcap"), reads)
+        done = self.scree("decode", self.folder, "--sensor", "imu")
+        lines = done.stdout.splitlines()
+        self.assertEqual(lines[0], IMU_HEADER)
+        return list(csv.DictReader(lines)), done.stderr
+
+    def test_decode_imu_lists_every_message_as_sent(self):
+        stream = b"".join(imu_message(i) for i in range(65530, 65540))
+        rows, said = self.decoded_imu([stream[i : i + 70] for i in range(0, len(stream), 70)])
+        self.assertEqual(said, "")
+        self.assertEqual([int(row["packet_counter"]) for row in rows],
+                         [i % 65536 for i in range(65530, 65540)])  # fmt: skip
+        row = rows[3]
+        self.assertEqual(row["sample_time_fine"], "6553300")
+        self.assertEqual([row[name] for name in ("qw", "qx", "qy", "qz")], ["0.6", "0", "0.8", "0"])
+        self.assertEqual([row[name] for name in ("wx", "wy", "wz")], ["0.1", "-0.2", "1e-07"])
+        self.assertEqual([float(row[name]) for name in ("ax", "ay", "az")], [1, -1 / (1 << 20), 10])
+        self.assertEqual([row[name] for name in ("roll_deg", "pitch_deg", "yaw_deg")], [""] * 3)
+        self.assertEqual(row["status"], str(0x80000003))
+        times = [int(row["t_ns"]) for row in rows]
+        self.assertEqual(times, sorted(times))
+        self.scree("decode", self.path("imu.pcap"), "--sensor", "imu", "--out", self.path("o.csv"))
+        with open(self.path("o.csv")) as file:
+            self.assertEqual(len(file.readlines()), 11)
+
+    def test_decode_imu_says_what_is_wrong(self):
+        messages = [imu_message(i) for i in range(20)]
+        messages[5] = messages[5][:20] + b"\x55" + messages[5][21:]
+        messages[9] = b"some garbage" + messages[9]
+        messages[12] = messages[11]
+        messages.append(xbus(item(0x1020, b"\0\x14") + item(0xF770, b"abc") + item(0x1060, b"")))
+        rows, said = self.decoded_imu(messages)
+        self.assertEqual(len(rows), 19)
+        for sentence in ("1 wrong checksum", "1 duplicate", "1 an item has the wrong size",
+                         "bytes belong to no message", "2 messages are missing",
+                         "1 values of unknown kinds"):  # fmt: skip
+            self.assertIn(sentence, said)
+
+    def test_decode_imu_of_nothing_is_one_sentence_and_exit_1(self):
+        cases = {
+            "no bytes": [],
+            "no Xbus message in 300 bytes": [b"nothing of the kind ." + bytes(79)] * 3,
+            "3 Xbus messages, but none with measurements": [xbus(b"", 0x3E)] * 3,
+            "wrong checksum": [imu_message(1)[:-1] + b"\0"],
+        }
+        for sentence, reads in cases.items():
+            write_imu(self.path("imu.pcap"), reads)
+            said = self.scree("decode", self.folder, "--sensor", "imu", code=1).stderr
+            self.assertEqual(len(said.splitlines()), 1, said)
+            self.assertIn(sentence, said)
+        write_imu(self.path("imu.pcap"), [imu_message(1)], link_type=1)
+        said = self.scree("decode", self.folder, "--sensor", "imu", code=1).stderr
+        self.assertIn("holds no serial bytes (link type 1, not 147)", said)
+        os.remove(self.path("imu.pcap"))
+        said = self.scree("decode", self.folder, "--sensor", "imu", code=1).stderr
+        self.assertIn("the folder has no imu.pcap", said)
+
     def test_a_cut_capture_gives_what_is_there(self):
         with open(self.capture, "r+b") as file:
             file.truncate(100_000)
@@ -102,6 +195,7 @@ class DecodeTest(unittest.TestCase):
         self.scree("info", code=2)
         self.scree("decode", self.capture, code=2)
         self.scree("decode", self.capture, "--sensor", "radar", code=2)
+        self.scree("decode", self.capture, "--sensor", "imu", "--pcd", self.folder, code=2)
         self.scree("info", "--help")
 
 

@@ -10,6 +10,7 @@ namespace {
 
 const std::map<std::string, void (*)(const DecodeOptions&)>& sensors() {
   static const std::map<std::string, void (*)(const DecodeOptions&)> all = {
+      {"encoder", decode_encoder},
       {"imu", decode_imu},
       {"lidar", decode_lidar},
   };

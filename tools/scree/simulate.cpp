@@ -1,4 +1,7 @@
+#include <spdlog/fmt/fmt.h>
+
 #include <memory>
+#include <utility>
 
 #include "commands.hpp"
 #include "progress.hpp"
@@ -12,9 +15,39 @@ struct Options {
   std::string folder, cloud, scene;
   CaptureSettings capture;
   CloudSettings points;
+  bool has_faults = false;
 };
 
-void run(const Options& options) {
+/// What was asked for, and with --faults the rest of what can go wrong.
+Faults faults_of(const CLI::App& command, const CaptureSettings& capture) {
+  if (capture.seconds < kLeastFaultySeconds) {
+    throw CLI::ValidationError("--faults",
+                               fmt::format("needs --seconds of {:g} or more", kLeastFaultySeconds));
+  }
+  Faults faults = draw_faults(capture.seconds, capture.seed);
+  const auto asked = [&](const char* option) { return command.count(option) > 0; };
+  if (asked("--packet-loss")) faults.packet_loss = capture.faults.packet_loss;
+  if (asked("--imu-corruption")) faults.imu_corruption = capture.faults.imu_corruption;
+  if (asked("--imu-gap")) faults.imu_gap = capture.faults.imu_gap;
+  if (asked("--encoder-gap")) faults.encoder_gap = capture.faults.encoder_gap;
+  return faults;
+}
+
+void add_gap(CLI::App& command, const char* name, const char* help, CLI::Option* cloud, Gap& gap) {
+  command
+      .add_option_function<std::pair<double, double>>(
+          name,
+          [&gap](const std::pair<double, double>& asked) {
+            gap = {asked.first, asked.second};
+          },
+          help)
+      ->type_name("START,SECONDS")
+      ->delimiter(',')
+      ->excludes(cloud)
+      ->check(CLI::Range(0.0, 3600.0));
+}
+
+void run(const CLI::App& command, const Options& options) {
   if (options.folder.empty() == options.cloud.empty()) {
     throw CLI::ValidationError("give either the folder of a capture or --cloud FILE.pcd");
   }
@@ -24,6 +57,7 @@ void run(const Options& options) {
     Progress progress("casting", 1000);
     CaptureSettings settings = options.capture;
     settings.scene = scene.value_or(settings.scene);
+    if (options.has_faults) settings.faults = faults_of(command, settings);
     written = write_capture(options.folder, settings, std::ref(progress));
   } else {
     const std::uint64_t seed = options.capture.seed;
@@ -31,6 +65,26 @@ void run(const Options& options) {
                           scene ? cloud_terrain(*scene, seed) : TerrainSettings());
   }
   if (!written) throw Failure(written.error().message);
+}
+
+void add_faults(CLI::App& command, Options& options, CLI::Option* cloud) {
+  Faults& faults = options.capture.faults;
+  const auto add_share = [&](const char* name, double& share, const char* help) {
+    command.add_option(name, share, help)
+        ->excludes(cloud)
+        ->check(CLI::Range(0.0, 0.5))
+        ->capture_default_str();
+  };
+  add_share("--packet-loss", faults.packet_loss, "share of the lidar's packets lost");
+  add_share("--imu-corruption", faults.imu_corruption,
+            "share of the IMU's bytes flipped, dropped or inserted");
+  add_gap(command, "--imu-gap", "the IMU's messages get lost", cloud, faults.imu_gap);
+  add_gap(command, "--encoder-gap", "the encoder's frames get lost", cloud, faults.encoder_gap);
+  command
+      .add_flag("--faults", options.has_faults,
+                "1 % of packets lost, 1 % of IMU messages corrupted, an IMU gap of 2 s and an "
+                "encoder gap of 3 s at times of the seed")
+      ->excludes(cloud);
 }
 
 }  // namespace
@@ -71,10 +125,9 @@ void add_simulate(CLI::App& app) {
       ->capture_default_str();
   command->add_flag("--dual", capture.dual, "dual returns")->excludes(cloud);
   command->add_flag("--pps", capture.pps, "the lidar's clock is locked to GPS")->excludes(cloud);
-  command->add_option("--packet-loss", capture.packet_loss, "share of the lidar's packets lost")
+  command->add_flag("--reverse", capture.reverse, "drives backwards for a stretch")
       ->excludes(cloud)
-      ->check(CLI::Range(0.0, 0.5))
-      ->capture_default_str();
+      ->excludes(at_rest);
   command->add_option("--imu-rate", capture.imu_rate_hz, "samples of the IMU a second")
       ->excludes(cloud)
       ->check(CLI::Range(100.0, 400.0))
@@ -83,11 +136,12 @@ void add_simulate(CLI::App& app) {
       ->add_flag("--imu-bursts", capture.imu_bursts,
                  "a USB adapter hands the IMU's bytes on every 16 ms only")
       ->excludes(cloud);
+  add_faults(*command, *options, cloud);
   command->add_option("--points", options->points.points, "of the cloud")
       ->needs(cloud)
       ->check(CLI::Range(std::size_t{1}, std::size_t{100'000'000}))
       ->capture_default_str();
-  command->callback([options] { run(*options); });
+  command->callback([command, options] { run(*command, *options); });
 }
 
 }  // namespace scree::cli

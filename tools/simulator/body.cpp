@@ -106,9 +106,10 @@ Motion follow_ground(const std::vector<TrackPoint>& track, const Terrain& terrai
   for (std::size_t i = 0; i < track.size(); ++i) {
     const TrackPoint& point = track[i];
     const Stance& on = stances[i];
-    const double up = settings.vibration * vibrations[0].advance(point.speed);
-    const double roll = std::atan(on[2]) + settings.shaking * vibrations[1].advance(point.speed);
-    const double pitch = -std::atan(on[1]) + settings.shaking * vibrations[2].advance(point.speed);
+    const double speed = std::abs(point.speed);
+    const double up = settings.vibration * vibrations[0].advance(speed);
+    const double roll = std::atan(on[2]) + settings.shaking * vibrations[1].advance(speed);
+    const double pitch = -std::atan(on[1]) + settings.shaking * vibrations[2].advance(speed);
     knots.push_back({{point.position.x(), point.position.y(), on[0] + up},
                      from_roll_pitch_yaw(roll, pitch, point.yaw)});
   }

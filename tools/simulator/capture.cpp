@@ -14,6 +14,11 @@
 namespace scree {
 namespace {
 
+/// Seconds since the capture's begin.
+double since_start(std::int64_t t_ns) {
+  return static_cast<double>(t_ns - kDriveStartNs) * 1e-9;
+}
+
 /// What the IMU answers while its driver sets it up.
 void greet(SerialPort& port, std::int64_t t_ns) {
   constexpr std::int64_t kPause = 50'000'000;
@@ -38,7 +43,9 @@ Result<void> write_imu(const std::filesystem::path& file, const Drive& drive, st
   constexpr std::int64_t kBurstNs = 16'000'000;
   SerialPort port(*pcap, drive.robot.imu.baud, settings.imu_bursts ? kBurstNs : 0, settings.seed);
   greet(port, start);
+  port.corrupt(settings.faults.imu_corruption);
   for (ImuMessage sample = imu.next(); sample.t_ns < end_ns; sample = imu.next()) {
+    if (settings.faults.imu_gap.holds(since_start(sample.t_ns))) continue;
     port.send(sample.t_ns + held_back, mt_data2(sample));
   }
   port.finish();
@@ -46,13 +53,17 @@ Result<void> write_imu(const std::filesystem::path& file, const Drive& drive, st
 }
 
 Result<void> write_can(const std::filesystem::path& file, const Drive& drive, std::int64_t end_ns) {
+  auto log = CanLogWriter::create(file);
+  if (!log) return tl::make_unexpected(log.error());
   const SimulatedEncoderSettings drawn = draw_encoder(drive.settings);
   SimulatedEncoder encoder(drive.motion, drive.robot.encoder, drawn, drive.settings.seed);
-  CanBus bus(file, drive.robot.encoder, drive.settings.seed);
+  CanBus bus(*log, drive.robot.encoder, drive.settings.seed);
+  bus.lose_encoder([gap = drive.settings.faults.encoder_gap](std::int64_t t_ns) {
+    return gap.holds(since_start(t_ns));
+  });
   bus.start(kDriveStartNs - 50'000'000, drawn.rate_hz);
   bus.run_until(end_ns, encoder);
-  if (!bus.close()) return fail(fmt::format("cannot write {}", file.string()));
-  return {};
+  return log->close();
 }
 
 /// Writes lidar.pcap and what it has shown. Returns the time of its end.
@@ -64,7 +75,7 @@ Result<std::int64_t> write_lidar(const std::filesystem::path& file, const Drive&
   const RayCaster caster(terrain);
   SimulatedLidar lidar(terrain, caster, draw_lidar(settings, robot.lidar), motion,
                        robot.lidar.mount(), kDriveStartNs, settings.seed);
-  Network network(*pcap, robot.lidar, settings.packet_loss, settings.seed);
+  Network network(*pcap, robot.lidar, settings.faults.packet_loss, settings.seed);
   Observer observer(terrain, motion, truth);
   // The packet that begins the turn after the last one is there too, so that the last sweep ends.
   const double turns = std::max(std::round(settings.seconds * settings.rate_hz), 1.0);

@@ -30,7 +30,8 @@ World draw_world(const CaptureSettings& settings) {
   } else {
     // Some recordings begin while the robot drives already.
     const double lead = Random(settings.seed, 0x7AC5).uniform(0.3, 3.5);
-    world.track = draw_track({lead + settings.seconds + 1, settings.speed}, settings.seed);
+    world.track =
+        draw_track({lead + settings.seconds + 1, settings.speed, settings.reverse}, settings.seed);
     world.track_start_ns = kDriveStartNs - static_cast<std::int64_t>(lead * 1e9);
     const auto way = thinned(world.track);
     const double length = 0.25 * static_cast<double>(way.size());

@@ -7,6 +7,7 @@
 #include "scree/core/sweep.hpp"
 #include "scree/sync/sync_buffer.hpp"
 #include "simulator/encoder.hpp"
+#include "simulator/faults.hpp"
 #include "simulator/imu.hpp"
 #include "simulator/lidar.hpp"
 #include "simulator/robot.hpp"
@@ -18,17 +19,18 @@ namespace scree {
 struct CaptureSettings {
   std::uint64_t seed = 1;
   Scene scene = Scene::mixed;
-  double seconds = 20;         ///< rounded to whole turns, at least one
-  double speed = 0;            ///< mean while driving, m/s; 0: drawn from 0.4 to 1.6
-  bool at_rest = false;        ///< the robot stands level at the origin, the ground is level there
-  double rate_hz = 10;         ///< turns of the lidar a second, 5 to 20
-  bool dual = false;           ///< dual returns instead of the strongest
-  bool pps = false;            ///< the lidar's clock is locked to GPS; else it runs free
-  double packet_loss = 0.001;  ///< share of the lidar's data packets that get lost
-  double imu_rate_hz = 100;    ///< 100 to 400
-  bool imu_bursts = false;     ///< a USB adapter hands the IMU's bytes on every 16 ms only
-  double cell = 0.02;          ///< of the terrain's raster, metres
-  double margin = 28;          ///< of terrain beyond the way, metres
+  double seconds = 20;       ///< rounded to whole turns, at least one
+  double speed = 0;          ///< mean while driving, m/s; 0: drawn from 0.4 to 1.6
+  bool reverse = false;      ///< drives backwards for a stretch
+  bool at_rest = false;      ///< the robot stands level at the origin, the ground is level there
+  double rate_hz = 10;       ///< turns of the lidar a second, 5 to 20
+  bool dual = false;         ///< dual returns instead of the strongest
+  bool pps = false;          ///< the lidar's clock is locked to GPS; else it runs free
+  double imu_rate_hz = 100;  ///< 100 to 400
+  bool imu_bursts = false;   ///< a USB adapter hands the IMU's bytes on every 16 ms only
+  double cell = 0.02;        ///< of the terrain's raster, metres
+  double margin = 28;        ///< of terrain beyond the way, metres
+  Faults faults;
 };
 
 /// Host's time at which every drive begins: 28 August 2020, 11:02 UTC.

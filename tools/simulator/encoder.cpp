@@ -46,7 +46,8 @@ void SimulatedEncoder::advance(std::int64_t t_ns) {
       burst_ = random_.uniform(0.05, 0.3);
       burst_left_ = random_.uniform(0.2, 0.6);
     }
-    double slip = settings_.slope_slip * forward.z();
+    const double climbed = moved < 0 ? -forward.z() : forward.z();
+    double slip = settings_.slope_slip * climbed;
     if (burst_left_ > 0) slip += burst_;
     burst_left_ -= step;
     turned_ += moved * (1 + slip);

@@ -1,7 +1,5 @@
 #include "simulator/links.hpp"
 
-#include <spdlog/fmt/fmt.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -39,16 +37,36 @@ void Network::write(std::int64_t sent_ns, int port, std::span<const std::uint8_t
 }
 
 SerialPort::SerialPort(PcapWriter& file, int baud, std::int64_t burst_ns, std::uint64_t seed)
-    : file_(file), byte_ns_(1e10 / baud), burst_ns_(burst_ns), random_(seed, 0x5E41) {}
+    : file_(file),
+      byte_ns_(1e10 / baud),
+      burst_ns_(burst_ns),
+      random_(seed, 0x5E41),
+      disturbances_(seed, 0x5E42) {}
 
 void SerialPort::send(std::int64_t sent_ns, std::span<const std::uint8_t> bytes) {
   read_until(sent_ns);
   line_free_ns_ = std::max(line_free_ns_, sent_ns);
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     const auto taken = static_cast<std::int64_t>(static_cast<double>(i + 1) * byte_ns_);
-    pending_.push_back({line_free_ns_ + taken, bytes[i]});
+    receive(line_free_ns_ + taken, bytes[i]);
   }
-  line_free_ns_ = pending_.back().t_ns;
+  const auto taken = static_cast<std::int64_t>(static_cast<double>(bytes.size()) * byte_ns_);
+  line_free_ns_ += taken;
+}
+
+void SerialPort::receive(std::int64_t t_ns, std::uint8_t byte) {
+  if (!disturbances_.chance(corrupted_share_)) return pending_.push_back({t_ns, byte});
+  switch (disturbances_.index(3)) {
+    case 0:
+      pending_.push_back({t_ns, static_cast<std::uint8_t>(byte ^ 1U << disturbances_.index(8))});
+      break;
+    case 1:
+      pending_.push_back({t_ns, byte});
+      pending_.push_back({t_ns, static_cast<std::uint8_t>(disturbances_.next())});
+      break;
+    default:
+      break;
+  }
 }
 
 void SerialPort::read_until(std::int64_t t_ns) {
@@ -72,9 +90,8 @@ void SerialPort::read_until(std::int64_t t_ns) {
   }
 }
 
-CanBus::CanBus(const std::filesystem::path& file, const EncoderSettings& encoder,
-               std::uint64_t seed)
-    : file_(file, std::ios::binary), encoder_(encoder), random_(seed, 0xCA4) {}
+CanBus::CanBus(CanLogWriter& file, const EncoderSettings& encoder, std::uint64_t seed)
+    : file_(file), encoder_(encoder), random_(seed, 0xCA4) {}
 
 void CanBus::start(std::int64_t t_ns, double encoder_rate_hz) {
   const auto period = static_cast<std::int64_t>(1e9 / encoder_rate_hz);
@@ -92,7 +109,8 @@ void CanBus::run_until(std::int64_t t_ns, SimulatedEncoder& encoder) {
     Sender& sender = *std::min_element(senders_.begin(), senders_.end(), earlier);
     if (sender.next_ns > t_ns) return;
     if (&sender == &senders_.front()) {
-      log(sender.next_ns, sender.id, encoder.frame(sender.next_ns));
+      const CanData frame = encoder.frame(sender.next_ns);
+      if (!is_lost_(sender.next_ns)) log(sender.next_ns, sender.id, frame);
     } else {
       CanData data{};
       for (std::uint8_t& byte : data) byte = static_cast<std::uint8_t>(random_.next());
@@ -103,18 +121,14 @@ void CanBus::run_until(std::int64_t t_ns, SimulatedEncoder& encoder) {
 }
 
 void CanBus::log(std::int64_t sent_ns, std::int64_t id, const CanData& data) {
-  constexpr std::int64_t kLargestStandardId = 0x7FF;
   logged_us_ = std::max(logged_us_ + 1, (sent_ns + delay_ns(random_) / 2) / 1000);
-  file_ << fmt::format("({}.{:06}) {} ", logged_us_ / 1'000'000, logged_us_ % 1'000'000,
-                       encoder_.interface)
-        << (id > kLargestStandardId ? fmt::format("{:08X}#", id) : fmt::format("{:03X}#", id));
-  for (const std::uint8_t byte : data) file_ << fmt::format("{:02X}", byte);
-  file_ << '\n';
-}
-
-bool CanBus::close() {
-  file_ << std::flush;
-  return static_cast<bool>(file_);
+  CanFrame frame;
+  frame.t_ns = logged_us_ * 1000;
+  frame.id = static_cast<std::uint32_t>(id);
+  frame.is_extended = frame.id > kLargestStandardId;
+  frame.size = static_cast<std::uint8_t>(data.size());
+  std::copy(data.begin(), data.end(), frame.data.begin());
+  file_.write(frame, encoder_.interface);
 }
 
 }  // namespace scree

@@ -1,11 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
-#include <fstream>
+#include <functional>
 #include <span>
+#include <utility>
 #include <vector>
 
+#include "scree/capture/can_log.hpp"
 #include "scree/capture/pcap_writer.hpp"
 #include "scree/config/settings.hpp"
 #include "scree/core/random.hpp"
@@ -43,6 +44,9 @@ public:
   /// @param burst_ns every so long an USB adapter hands on what it has; 0: as it comes
   SerialPort(PcapWriter& file, int baud, std::int64_t burst_ns, std::uint64_t seed);
 
+  /// From now on this share of bytes has a bit flipped, is lost, or is followed by one that nobody
+  /// sent, each as often.
+  void corrupt(double share) { corrupted_share_ = share; }
   /// @param sent_ns when the device began to send; not before that of the message before
   void send(std::int64_t sent_ns, std::span<const std::uint8_t> bytes);
   /// Reads the rest.
@@ -50,11 +54,13 @@ public:
 
 private:
   void read_until(std::int64_t t_ns);
+  void receive(std::int64_t t_ns, std::uint8_t byte);
 
   PcapWriter& file_;
   double byte_ns_;
   std::int64_t burst_ns_;
-  Random random_;
+  Random random_, disturbances_;
+  double corrupted_share_ = 0;
   struct Pending {
     std::int64_t t_ns;
     std::uint8_t byte;
@@ -66,13 +72,16 @@ private:
 /// A CAN bus as `candump -L` logs it: the encoder's frames and those of other devices.
 class CanBus {
 public:
-  CanBus(const std::filesystem::path& file, const EncoderSettings& encoder, std::uint64_t seed);
+  /// Keeps a reference to the file.
+  CanBus(CanLogWriter& file, const EncoderSettings& encoder, std::uint64_t seed);
 
+  /// The encoder's frames are not logged where this says so of the time at which they are sent.
+  void lose_encoder(std::function<bool(std::int64_t t_ns)> is_lost) {
+    is_lost_ = std::move(is_lost);
+  }
   /// Logs all that is sent up to a time.
   void run_until(std::int64_t t_ns, SimulatedEncoder& encoder);
   void start(std::int64_t t_ns, double encoder_rate_hz);
-  /// False when the file could not be written.
-  bool close();
 
 private:
   struct Sender {
@@ -80,10 +89,11 @@ private:
   };
   void log(std::int64_t sent_ns, std::int64_t id, const CanData& data);
 
-  std::ofstream file_;
+  CanLogWriter& file_;
   EncoderSettings encoder_;
   Random random_;
   std::vector<Sender> senders_;  // the first is the encoder
+  std::function<bool(std::int64_t)> is_lost_ = [](std::int64_t) { return false; };
   std::int64_t logged_us_ = 0;
 };
 

@@ -39,10 +39,10 @@ private:
   std::array<Wave, 3> waves_{};
 };
 
-/// Speed over time: stands, drives off, may stop once.
+/// Speed over time: stands, drives off, may stop once or drive backwards once.
 class SpeedProfile {
 public:
-  SpeedProfile(const TrackSettings& settings, Random& random)
+  SpeedProfile(const TrackSettings& settings, Random& random, Random& backing)
       : mean_(settings.speed > 0 ? settings.speed : random.uniform(0.4, 1.6)),
         variation_(random.uniform(0.1, 0.45)),
         waves_(random, 5, 16),
@@ -50,7 +50,10 @@ public:
         drives_off_(random.uniform(0.8, 2.0)) {
     const bool stops = settings.seconds > 12 && random.chance(0.25);
     const double at = random.uniform(0.4, 0.8) * settings.seconds;
-    if (stops) stop_ = at;
+    if (stops && !settings.reverse) stop_ = at;
+    if (!settings.reverse) return;
+    backs_ = backing.uniform(0.3, 0.5) * settings.seconds;
+    forwards_ = backs_ + std::min(backing.uniform(3, 6), settings.seconds / 3);
   }
 
   double operator()(double t) const {
@@ -59,14 +62,17 @@ public:
     const double wanted = std::clamp(mean_ * (1 + variation_ * waves_(t)), 0.3, 2.0);
     const double away = std::abs(t - stop_) - kStopped / 2;
     const double going = std::min(smooth((t - stands_) / drives_off_), smooth(away / kBraking));
-    return wanted * going;
+    if (t < backs_ - kBraking || t > forwards_ + kBraking) return wanted * going;
+    const double turned = std::min(std::abs(t - backs_), std::abs(t - forwards_));
+    const double direction = t > backs_ && t < forwards_ ? -0.6 : 1;
+    return direction * wanted * std::min(going, smooth(turned / kBraking));
   }
 
 private:
   double mean_, variation_;
   Waves waves_;
   double stands_, drives_off_;
-  double stop_ = -1e9;
+  double stop_ = -1e9, backs_ = -1e9, forwards_ = -1e9;
 };
 
 }  // namespace
@@ -75,7 +81,8 @@ std::vector<TrackPoint> draw_track(const TrackSettings& settings, std::uint64_t 
   constexpr double kArena = 9;          // metres; beyond it the robot turns back
   constexpr double kMostTurning = 0.6;  // rad/s
   Random random(seed, 0x7AC4);
-  const SpeedProfile speed_at(settings, random);
+  Random backing(seed, 0x7AC6);
+  const SpeedProfile speed_at(settings, random, backing);
   const Waves bends(random, 4, 16);
   const double sharpest = random.uniform(0.1, 0.4);
   const auto points = static_cast<std::size_t>(std::ceil(settings.seconds / kStep)) + 1;
@@ -93,7 +100,7 @@ std::vector<TrackPoint> draw_track(const TrackSettings& settings, std::uint64_t 
       wanted += 0.35 * std::sin(home - here.yaw) * smooth((here.position.norm() - kArena) / 3);
       if (std::cos(home - here.yaw) < 0) wanted = std::copysign(0.4, std::sin(home - here.yaw));
     }
-    const double most = kMostTurning / std::max(here.speed, 0.3);
+    const double most = kMostTurning / std::max(std::abs(here.speed), 0.3);
     curvature += (std::clamp(wanted, -most, most) - curvature) * kStep / 0.5;
     const double moved = here.speed * kStep;
     driven += moved;

@@ -14,9 +14,9 @@ struct ImuMessage {
   std::int64_t t_ns = 0;  ///< host's time of the measurement
   std::uint16_t packet_counter = 0;
   std::uint32_t sample_time_fine = 0;
-  Eigen::Quaterniond orientation;  ///< sensor to east-north-up
-  Eigen::Vector3d acceleration;    ///< specific force, sensor's axes, m/s^2
-  Eigen::Vector3d rate_of_turn;    ///< sensor's axes, rad/s
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  ///< sensor to east-north-up
+  Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();  ///< specific force, sensor's axes, m/s^2
+  Eigen::Vector3d rate_of_turn = Eigen::Vector3d::Zero();  ///< sensor's axes, rad/s
   std::uint32_t status = 0;
 };
 

@@ -22,6 +22,9 @@ using Process = std::function<const ObstacleList&(const Sweep& sweep, Dropped& d
 /// The robot's daemon: one thread reads the lidar, one detects, one publishes lists and health and
 /// writes the log. Between them lie bounded rings; where one is full the newest is dropped and
 /// counted. A sensor that is lost is waited for, for ever.
+///
+/// Sweeps are on the monotonic clock, and so are the lists that `Process` makes of them; lists are
+/// published with the wall-clock time of then. Setting the wall clock disturbs nothing else.
 class Daemon {
 public:
   /// Binds the ports, opens LCM and starts the threads. The caller blocks the signals that it waits

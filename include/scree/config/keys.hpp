@@ -125,12 +125,28 @@ void for_each_key(AnySettings& settings, Visit&& visit) {
   auto& imu = settings.imu;
   key("device", imu.device, "", 0, 0, "serial port of the Xsens MTi");
   key("baud", imu.baud, "bit/s", 4800, 4000000, "its bit rate");
+  key("configure", imu.configure, "", 0, 0,
+      "set up its bit rate and its outputs at start; with false it is taken as it is and nothing "
+      "is "
+      "sent to it");
+  key("rate", imu.rate, "Hz", 100, 400,
+      "orientations, accelerations and rates a second: more follows fast motion better and needs a "
+      "faster line");
+  key("acceleration_hr_rate", imu.acceleration_hr_rate, "Hz", 0, 1000,
+      "accelerations a second besides, at high rate; 0 for none");
+  key("gyro_hr_rate", imu.gyro_hr_rate, "Hz", 0, 1000,
+      "rates of turn a second besides, at high rate; 0 for none");
   key("rpy_deg", imu.rpy_deg, "deg", -360, 360, "rotation imu -> base: roll, pitch, yaw");
   key("translation", imu.translation, "m", -100, 100, "imu origin in base: x, y, z");
 
   table = "encoder";
   auto& encoder = settings.encoder;
   key("interface", encoder.interface, "", 0, 0, "SocketCAN interface of the wheel encoder");
+  key("dbc", encoder.dbc, "", 0, 0,
+      "DBC file that says where the signal lies, beside this file; empty: the keys can_id to "
+      "signed "
+      "say it");
+  key("signal", encoder.signal, "", 0, 0, "its signal there: MESSAGE.SIGNAL");
   key("can_id", encoder.can_id, "", 0, 0x1FFFFFFF,
       "identifier of its frame; above 0x7FF: an extended (29-bit) one");
   key("start_bit", encoder.start_bit, "", 0, 511,
@@ -140,7 +156,38 @@ void for_each_key(AnySettings& settings, Visit&& visit) {
   key("signed", encoder.is_signed, "", 0, 0, "whether the signal is two's complement");
   key("kind", encoder.kind, "", 0, 0,
       "counter wraps at its length; speed is metres per second after scaling");
-  key("scale", encoder.scale, "m or m/s", -1e6, 1e6, "metres per count, or m/s per unit");
+  key("scale", encoder.scale, "m or m/s", -1e6, 1e6,
+      "metres per count, or m/s per unit; with a DBC file per unit of its physical value: 0.277778 "
+      "for km/h; below zero where the wheel counts backwards");
+  key("max_speed", encoder.max_speed, "m/s", 0.1, 200,
+      "readings that ask for a faster wheel are refused, and counted");
+  key("max_acceleration", encoder.max_acceleration, "m/s^2", 0.1, 1000,
+      "the same for a wheel that gains or loses speed faster; it spins up and is blocked faster "
+      "than "
+      "the robot, so leave room");
+
+  table = "gpio";
+  auto& gpio = settings.gpio;
+  key("pps", gpio.pps, "", 0, 0,
+      "line on which a GPS receiver's pulse per second arrives, CHIP:LINE as gpiochip0:18, the "
+      "line "
+      "by number or name; empty: none");
+  key("pps_active_low", gpio.pps_active_low, "", 0, 0, "the second begins where its level falls");
+  key("stop", gpio.stop, "", 0, 0,
+      "line that is on while the robot is blind or an obstacle is in the stop zone; empty: none");
+  key("stop_active_low", gpio.stop_active_low, "", 0, 0,
+      "on is the low level: with a pull-down, a broken cable stops the robot too");
+  key("heartbeat", gpio.heartbeat, "", 0, 0,
+      "line that changes with every obstacle list, for a watchdog; empty: none");
+  key("heartbeat_active_low", gpio.heartbeat_active_low, "", 0, 0, "it begins at the high level");
+
+  table = "stop";
+  auto& stop = settings.stop;
+  key("length", stop.length, "m", 0.1, 50,
+      "the stop zone reaches this far ahead of the origin of base: braking distance and the way of "
+      "0.3 s");
+  key("width", stop.width, "m", 0.1, 50, "of the stop zone: the robot's, and room on both sides");
+  key("hold", stop.hold, "s", 0, 60, "the line stays on this long after the reason has gone");
 
   table = "map";
   auto& map = settings.map;

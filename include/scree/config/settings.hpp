@@ -86,6 +86,10 @@ struct LidarSettings {
 struct ImuSettings {
   std::string device = "/dev/ttyUSB0";
   int baud = 921600;
+  bool configure = true;
+  int rate = 100;
+  int acceleration_hr_rate = 0;
+  int gyro_hr_rate = 0;
   Eigen::Vector3d rpy_deg{0, 0, 0};
   Eigen::Vector3d translation{0, 0, 0};
 
@@ -98,6 +102,7 @@ struct ImuSettings {
 
 struct EncoderSettings {
   std::string interface = "can0";
+  std::string dbc, signal;
   std::int64_t can_id = 0x1A0;
   int start_bit = 0;
   int length = 32;
@@ -105,6 +110,31 @@ struct EncoderSettings {
   bool is_signed = true;
   EncoderKind kind = EncoderKind::counter;
   double scale = 0.000157;
+  double max_speed = 5.0;
+  double max_acceleration = 10.0;
+
+  // No keys: what only a DBC file says, filled in by encoder::with_dbc().
+  bool is_extended = false;       ///< 29 bits although can_id is not above 0x7FF
+  double factor = 1, offset = 0;  ///< scale multiplies raw * factor + offset
+
+  bool has_extended_id() const { return is_extended || can_id > 0x7FF; }
+  /// Bytes that a frame must have to hold the signal.
+  int frame_bytes() const {
+    if (byte_order == ByteOrder::little_endian) return (start_bit + length + 7) / 8;
+    // In the first byte the signal has the bits from its start downwards, then whole bytes follow.
+    return start_bit / 8 + 1 + std::max(length - start_bit % 8 - 1 + 7, 0) / 8;
+  }
+};
+
+struct GpioSettings {
+  std::string pps, stop, heartbeat;
+  bool pps_active_low = false, stop_active_low = false, heartbeat_active_low = false;
+};
+
+struct StopSettings {
+  double length = 2.0;
+  double width = 1.0;
+  double hold = 0.5;
 };
 
 /// The ground put together of many sweeps while driving.
@@ -194,6 +224,8 @@ struct Settings {
   LidarSettings lidar;
   ImuSettings imu;
   EncoderSettings encoder;
+  GpioSettings gpio;
+  StopSettings stop;
   DetectSettings detect_cloud = DetectSettings::for_cloud();
   DetectSettings detect_map = DetectSettings::for_map();
   DetectSettings detect_sweep = DetectSettings::for_sweep();

@@ -30,6 +30,7 @@ TEST(Settings, EmptyFileGivesDefaults) {
 TEST(Settings, ReadsEveryKindOfValue) {
   const auto settings = parse_settings(
       "[lidar]\nmodel = \"puck_hires\"\nport = 2369\ntranslation = [0.1, 0, 0.95]\nmax_range = 40\n"
+      "[imu]\nconfigure = false\nrate = 400\ngyro_hr_rate = 1000\n"
       "[encoder]\ncan_id = 0x18FF1234\nsigned = false\n[detect.cloud]\nleaf_size = 0.1\n",
       "robot.toml");
   ASSERT_TRUE(settings) << settings.error().message;
@@ -37,6 +38,9 @@ TEST(Settings, ReadsEveryKindOfValue) {
   EXPECT_EQ(settings->lidar.port, 2369);
   EXPECT_EQ(settings->lidar.translation, Eigen::Vector3d(0.1, 0, 0.95));
   EXPECT_EQ(settings->lidar.max_range, 40.0);
+  EXPECT_FALSE(settings->imu.configure);
+  EXPECT_EQ(settings->imu.rate, 400);
+  EXPECT_EQ(settings->imu.gyro_hr_rate, 1000);
   EXPECT_EQ(settings->encoder.can_id, 0x18FF1234);
   EXPECT_FALSE(settings->encoder.is_signed);
   EXPECT_EQ(settings->detect_cloud.leaf_size, 0.1);

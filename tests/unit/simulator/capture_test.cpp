@@ -54,7 +54,7 @@ CaptureSettings quick() {
 TEST(Capture, HoldsWhatTheContractSays) {
   const Folder folder("scree_capture_test");
   CaptureSettings settings = quick();
-  settings.packet_loss = 0;
+  settings.faults.packet_loss = 0;
   std::size_t last = 0;
   const auto written = write_capture(folder.path, settings, [&](std::size_t done) { last = done; });
   ASSERT_TRUE(written) << written.error().message;
@@ -145,6 +145,46 @@ TEST(Capture, SameSeedSameBytes) {
   for (const char* file : {"lidar.pcap", "imu.pcap", "can.log", "truth.json", "scree.toml"}) {
     EXPECT_EQ(bytes_of(a.path / file), bytes_of(b.path / file)) << file;
   }
+}
+
+/// Host times of the frames of an id in a can.log, in nanoseconds.
+std::vector<std::int64_t> frames_of(const fs::path& file, std::int64_t can_id) {
+  std::vector<std::int64_t> times;
+  std::ifstream stream(file);
+  for (std::string line; std::getline(stream, line);) {
+    const std::string id = fmt::format(" {:0{}X}#", can_id, can_id > 0x7FF ? 8 : 3);
+    if (line.find(id) == std::string::npos) continue;
+    times.push_back(std::stoll(line.substr(1, 10)) * 1'000'000'000 +
+                    std::stoll(line.substr(12, 6)) * 1000);
+  }
+  return times;
+}
+
+TEST(Capture, GapsAreWhereTheyWereAskedFor) {
+  const Folder folder("scree_capture_gaps");
+  CaptureSettings settings = quick();
+  settings.seconds = 1;
+  settings.faults.imu_gap = {0.2, 0.3};
+  settings.faults.encoder_gap = {0.6, 0.25};
+  ASSERT_TRUE(write_capture(folder.path, settings, [](std::size_t) {}));
+  const auto longest_pause = [](const std::vector<std::int64_t>& times, double start) {
+    std::size_t longest = 1;
+    for (std::size_t i = 2; i < times.size(); ++i) {
+      if (times[i] - times[i - 1] > times[longest] - times[longest - 1]) longest = i;
+    }
+    constexpr std::int64_t kBegin = 1'598'612'520'000'000'000;
+    EXPECT_NEAR(static_cast<double>(times[longest - 1] - kBegin) * 1e-9, start, 0.02);
+    return static_cast<double>(times[longest] - times[longest - 1]) * 1e-9;
+  };
+  std::vector<std::int64_t> reads;
+  auto reader = PcapReader::open(folder.path / "imu.pcap");
+  ASSERT_TRUE(reader) << reader.error().message;
+  for (PcapRecord record; reader->next(record);) reads.push_back(record.arrival_ns);
+  EXPECT_NEAR(longest_pause(reads, 0.2), 0.3, 0.02);
+
+  const Robot robot = draw_robot(settings.seed);
+  const auto frames = frames_of(folder.path / "can.log", robot.encoder.can_id);
+  EXPECT_NEAR(longest_pause(frames, 0.6), 0.25, 0.02);
 }
 
 TEST(Capture, UnwritableFolderIsOneSentence) {

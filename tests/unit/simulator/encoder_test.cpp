@@ -32,11 +32,11 @@ TEST(Signal, LiesInTheFrameAsDbcSays) {
   EXPECT_EQ(data, (CanData{0, 0x0A, 0xBC, 0, 0, 0, 0, 0}));
 }
 
-/// Straight on at 1 m/s for 20 s, level or up a slope of one to ten.
-Motion straight(double slope) {
+/// Straight on at 1 m/s for 20 s, level or up a slope of one to ten; or straight back again.
+Motion straight(double slope, double metres_a_second = 1) {
   std::vector<Pose> knots;
   for (int i = 0; i <= 8000; ++i) {
-    const double x = 0.0025 * i * std::cos(std::atan(slope));
+    const double x = metres_a_second * 0.0025 * i * std::cos(std::atan(slope));
     knots.push_back({{x, 0, slope * x}, from_roll_pitch_yaw(0, -std::atan(slope), 0)});
   }
   return {std::move(knots), 0, 2'500'000};
@@ -65,6 +65,14 @@ TEST(SimulatedEncoder, CountsTheWayThroughItsWraps) {
   EXPECT_NEAR(counted(straight(0), settings), 20, 0.001);
   settings.scale_error = 0.008;
   EXPECT_NEAR(counted(straight(0), settings), 20 * 1.008, 0.001);
+}
+
+TEST(SimulatedEncoder, CountsDownWhenTheRobotDrivesBackwards) {
+  SimulatedEncoderSettings settings{.scale_error = 0, .slope_slip = 0, .bursts_a_minute = 0};
+  EXPECT_NEAR(counted(straight(0, -1), settings), -20, 0.001);
+  // Backwards down a slope the wheel turns less than it moves.
+  settings.slope_slip = 0.05;
+  EXPECT_NEAR(counted(straight(0.1, -1), settings), -20 * (1 - 0.05 * 0.0995), 0.002);
 }
 
 TEST(SimulatedEncoder, SlipsUphillAndInBursts) {

@@ -80,16 +80,84 @@ TEST_P(Serial, KeepsAllBytesInOrderWhateverTheReads) {
 INSTANTIATE_TEST_SUITE_P(Reads, Serial, testing::Values(0, 16'000'000),
                          [](const auto& which) { return which.param == 0 ? "Soon" : "InBursts"; });
 
+TEST(SerialPort, CorruptsTheShareThatItIsAskedFor) {
+  const fs::path file = fs::path(testing::TempDir()) / "scree_corrupt_test.pcap";
+  auto pcap = PcapWriter::create_serial(file);
+  ASSERT_TRUE(pcap);
+  SerialPort port(*pcap, 921600, 0, 1);
+  constexpr double kShare = 0.001;  // few enough to be told apart
+  port.corrupt(kShare);
+  // Bytes that tell their place modulo 251: a flipped bit is one that does not fit in, a lost one
+  // lets the count skip, one too many delays it.
+  constexpr int kBytes = 600'000, kMessage = 100, kModulus = 251;
+  for (int i = 0; i < kBytes; i += kMessage) {
+    std::vector<std::uint8_t> message;
+    for (int k = i; k < i + kMessage; ++k)
+      message.push_back(static_cast<std::uint8_t>(k % kModulus));
+    port.send(1'000'000'000LL + i * 20'000LL, message);
+  }
+  port.finish();
+  ASSERT_TRUE(pcap->close());
+  std::vector<int> received;
+  for (const Record& record : records(file)) {
+    received.insert(received.end(), record.bytes.begin(), record.bytes.end());
+  }
+  int flipped = 0, lost = 0, inserted = 0, next = 0;
+  for (std::size_t i = 0; i + 2 < received.size(); ++i) {
+    const auto follows = [&](int byte, int places) { return byte == (next + places) % kModulus; };
+    if (!follows(received[i], 0)) {
+      if (follows(received[i], 1) && follows(received[i + 1], 2)) {
+        ++lost;
+        ++next;
+      } else if (follows(received[i + 1], 0)) {
+        ++inserted;
+        --next;
+      } else {
+        ++flipped;
+      }
+    }
+    ++next;
+  }
+  for (const int count : {flipped, lost, inserted}) EXPECT_NEAR(count, kBytes * kShare / 3, 50);
+  fs::remove(file);
+}
+
+TEST(CanBus, LosesTheEncodersFramesButNotThoseOfOthers) {
+  const fs::path file = fs::path(testing::TempDir()) / "scree_can_gap_test.log";
+  EncoderSettings layout;
+  layout.can_id = 0x123;
+  const Motion motion{Pose()};
+  SimulatedEncoder encoder(motion, layout, {}, 1);
+  constexpr std::int64_t kBegin = 1'598'601'600'000'000'000;
+  CanBus bus(file, layout, 1);
+  bus.lose_encoder([](std::int64_t t_ns) { return t_ns >= kBegin + 2'000'000'000; });
+  bus.start(kBegin, 100);
+  bus.run_until(kBegin + 5'000'000'000, encoder);
+  ASSERT_TRUE(bus.close());
+  std::ifstream stream(file);
+  int encoders = 0, others_late = 0;
+  for (std::string line; std::getline(stream, line);) {
+    const bool is_encoder = line.find(" 123#") != std::string::npos;
+    encoders += is_encoder ? 1 : 0;
+    others_late += !is_encoder && std::stod(line.substr(1)) > 1'598'601'603 ? 1 : 0;
+  }
+  EXPECT_EQ(encoders, 200);
+  EXPECT_GT(others_late, 5);
+  fs::remove(file);
+}
+
 TEST(CanBus, LogsAsCandumpDoes) {
   const fs::path file = fs::path(testing::TempDir()) / "scree_can_test.log";
   EncoderSettings layout;
   layout.can_id = 0x18FF50E5;
   const Motion motion{Pose()};
   SimulatedEncoder encoder(motion, layout, {}, 1);
-  CanBus bus(file, layout, 1);
+  auto log = CanLogWriter::create(file);
+  ASSERT_TRUE(log);
+  CanBus bus(*log, layout, 1);
   bus.start(1'598'601'600'000'000'000, 100);
   bus.run_until(1'598'601'601'000'000'000, encoder);
-  ASSERT_TRUE(bus.close());
+  ASSERT_TRUE(log->close());
   std::ifstream stream(file);
   const auto has_the_form = testing::MatchesRegex(
       R"(\([0-9]{10}\.[0-9]{6}\) can0 ([0-9A-F]{3}|[0-9A-F]{8})#[0-9A-F]{16})");

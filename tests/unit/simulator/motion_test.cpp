@@ -39,6 +39,47 @@ TEST(Track, IsSmoothAndStaysNear) {
   }
 }
 
+TEST(Track, DrivesBackwardsForAStretchIfAsked) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const auto track = draw_track({.seconds = 20, .reverse = true}, seed);
+    double back = 0, on = 0;
+    int turns = 0;
+    for (std::size_t i = 1; i < track.size(); ++i) {
+      const TrackPoint &before = track[i - 1], &here = track[i];
+      const Eigen::Vector2d ahead(std::cos(before.yaw), std::sin(before.yaw));
+      const double moved = (here.position - before.position).dot(ahead);
+      EXPECT_NEAR(moved * 1e9 / kTrackStepNs, before.speed, 1e-3) << i;
+      (moved < 0 ? back : on) += std::abs(moved);
+      turns += (here.speed < 0) != (before.speed < 0) ? 1 : 0;
+      EXPECT_LT(std::abs(here.speed - before.speed), 0.01);
+      ASSERT_LT(here.position.norm(), 20) << "seed " << seed;
+    }
+    EXPECT_EQ(turns, 2) << "seed " << seed;
+    EXPECT_GT(back, 0.3) << "seed " << seed;
+    EXPECT_GT(on, back);
+  }
+}
+
+TEST(Body, DrivesBackwardsAsTheTrackSays) {
+  TerrainSettings settings;
+  settings.size = 50;
+  settings.cell = 0.05;
+  settings.positive = settings.negative = settings.smooth = 0;
+  const Terrain terrain(settings, 2);
+  const auto track = draw_track({.seconds = 20, .reverse = true}, 4);
+  const Motion motion = follow_ground(track, terrain, draw_body(2), 0, 2);
+  for (std::size_t i = 10; i < track.size(); i += 10) {
+    const auto t_ns = static_cast<std::int64_t>(i) * kTrackStepNs;
+    const double moved = motion.distance(t_ns) - motion.distance(t_ns - 10 * kTrackStepNs);
+    if (track[i].speed < -0.1) {
+      EXPECT_LT(moved, 0) << i;
+    }
+    if (track[i].speed > 0.1) {
+      EXPECT_GT(moved, 0) << i;
+    }
+  }
+}
+
 TEST(Track, DrivesAsFastAsAsked) {
   const auto track = draw_track({40, 1.2}, 3);
   double sum = 0;

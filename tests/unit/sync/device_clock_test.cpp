@@ -3,130 +3,239 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <random>
+#include <string>
+
+#include "clock_scenario.hpp"
 
 namespace scree {
 namespace {
 
-constexpr std::int64_t kHour = 3'600'000'000'000, kSecond = 1'000'000'000, kMillisecond = 1'000'000;
+using namespace clock_scenario;
+
 constexpr std::int64_t kPacket = 1'327'104;
-constexpr std::int64_t kEpoch = 1'598'612'523 * kSecond;
-
-/// A sensor that runs `ppm` faster than the host, and a network with a delay of its own.
-class Simulation {
-public:
-  DeviceClock clock{kHour};
-  std::int64_t device_at_start = 100 * kSecond;
-  double ppm = 0;
-  std::int64_t least_delay = 100'000;
-
-  std::int64_t device(std::int64_t true_ns) const {
-    const auto gained =
-        static_cast<std::int64_t>(static_cast<double>(true_ns - kEpoch) * ppm * 1e-6);
-    return (device_at_start + true_ns - kEpoch + gained) % kHour;
-  }
-  std::int64_t delay() {
-    // Mostly next to none, now and then a host that is busy for milliseconds.
-    std::exponential_distribution<double> usual(1.0 / 50e3), busy(1.0 / 3e6);
-    return least_delay +
-           static_cast<std::int64_t>(random_() % 50 == 0 ? busy(random_) : usual(random_));
-  }
-  bool packet(std::int64_t true_ns) { return clock.update(device(true_ns), true_ns + delay()); }
-  std::int64_t error(std::int64_t true_ns) const {
-    return clock.to_host(device(true_ns)) - true_ns - least_delay;
-  }
-
-private:
-  std::mt19937 random_{7};
-};
 
 TEST(DeviceClock, FindsTheHostsTimeBehindDelaysAndSkew) {
   for (const double ppm : {-150.0, -20.0, 0.0, 20.0, 150.0}) {
-    Simulation simulation;
-    simulation.ppm = ppm;
-    std::int64_t worst = 0;
-    for (std::int64_t t = kEpoch; t < kEpoch + 60 * kSecond; t += kPacket) {
-      simulation.packet(t);
-      if (t > kEpoch + kSecond / 10) worst = std::max(worst, std::abs(simulation.error(t)));
-    }
-    EXPECT_LT(worst, 50'000) << ppm;
-    EXPECT_EQ(simulation.clock.device_restarts() + simulation.clock.host_steps(), 0U);
+    Scenario lidar;
+    lidar.ppm = ppm;
+    EXPECT_LT(lidar.run(60 * kSecond, kSecond / 10), 50'000) << ppm;
+    EXPECT_EQ(lidar.jumps(), 0U);
   }
 }
 
-TEST(DeviceClock, RunsOnAcrossTheFullHour) {
-  Simulation simulation;
-  simulation.device_at_start = kHour - 5 * kSecond;
-  for (std::int64_t t = kEpoch; t < kEpoch + 10 * kSecond; t += kPacket) {
-    simulation.packet(t);
-    ASSERT_LT(std::abs(simulation.error(t)), 20 * kMillisecond);
+TEST(DeviceClock, IsEstimatedAfterEnoughPacketsOverEnoughTime) {
+  Scenario lidar;
+  EXPECT_EQ(lidar.clock.state(), ClockState::unsynchronised);
+  lidar.run(kSecond - kPacket);
+  EXPECT_EQ(lidar.clock.state(), ClockState::unsynchronised);
+  EXPECT_GE(lidar.clock.accuracy_ns(), kMillisecond);
+  lidar.run(3 * kPacket);
+  EXPECT_EQ(lidar.clock.state(), ClockState::estimated);
+  EXPECT_LT(lidar.clock.accuracy_ns(), kMillisecond);
+  EXPECT_EQ(name_of(lidar.clock.state()), std::string("estimated"));
+
+  Scenario rare;
+  rare.sample_ns = kSecond;
+  rare.run(19 * kSecond);
+  EXPECT_EQ(rare.clock.state(), ClockState::unsynchronised);
+}
+
+TEST(DeviceClock, FirstPacketsThatAreLateAreMadeGoodWithoutRunningBackwards) {
+  Scenario lidar;
+  lidar.way = [](std::int64_t ready_ns, Random&) {
+    return ready_ns + (ready_ns < kEpoch + 20 * kPacket ? 4 * kMillisecond : 0);
+  };
+  std::int64_t before = 0;
+  for (int i = 0; i < 20; ++i) lidar.sample();
+  EXPECT_EQ(lidar.error(), 4 * kMillisecond);
+  for (int i = 0; i < 20; ++i) {
+    lidar.sample();
+    EXPECT_GT(lidar.host(), before);
+    before = lidar.host();
   }
-  EXPECT_LT(std::abs(simulation.error(kEpoch + 10 * kSecond)), 50'000);
-  EXPECT_EQ(simulation.clock.device_restarts() + simulation.clock.host_steps(), 0U);
+  EXPECT_LT(lidar.run(kSecond), 1000);
+  EXPECT_EQ(lidar.jumps(), 0U);
+}
+
+TEST(DeviceClock, RunsOnAcrossTheWrapOfItsPeriod) {
+  constexpr std::int64_t kSampleTimeFine = 4'294'967'296 * 100'000;  // of the Xsens
+  for (const std::int64_t period : {kHour, kSampleTimeFine, 65'536 * 10 * kMillisecond}) {
+    Scenario device(period);
+    device.device_at_start_ns = period - 5 * kSecond;
+    EXPECT_LT(device.run(10 * kSecond, kSecond / 10), 50'000);
+    EXPECT_EQ(device.jumps(), 0U);
+  }
 }
 
 TEST(DeviceClock, FindsTheHourAfterAGapOfAnyLength) {
-  for (const std::int64_t gap : {2 * kSecond, kHour / 2, kHour, 3 * kHour + 1700 * kSecond}) {
-    Simulation simulation;
-    simulation.device_at_start = kHour - 5 * kSecond;
-    simulation.ppm = 30;
-    for (std::int64_t t = kEpoch; t < kEpoch + 4 * kSecond; t += kPacket) simulation.packet(t);
-    const std::int64_t back = kEpoch + 4 * kSecond + gap;
-    EXPECT_FALSE(simulation.packet(back)) << gap;
-    for (std::int64_t t = back + kPacket; t < back + kSecond; t += kPacket) simulation.packet(t);
-    EXPECT_LT(std::abs(simulation.error(back + kSecond)), 50'000) << gap;
-    EXPECT_EQ(simulation.clock.device_restarts() + simulation.clock.host_steps(), 0U);
+  for (const std::int64_t gap :
+       {2 * kSecond, 30 * kSecond, kHour / 2, kHour, 3 * kHour + 1700 * kSecond, 40 * 24 * kHour}) {
+    Scenario lidar;
+    lidar.device_at_start_ns = kHour - 5 * kSecond;
+    lidar.ppm = 30;
+    lidar.run(30 * kSecond);
+    lidar.skip(gap);
+    EXPECT_FALSE(lidar.sample()) << gap;
+    EXPECT_LT(lidar.run(kSecond, kSecond / 10), 50'000) << gap;
+    EXPECT_EQ(lidar.jumps(), 0U);
   }
 }
 
+TEST(DeviceClock, TheSkewBridgesTheTimeBetweenPromptPackets) {
+  Scenario imu;
+  imu.sample_ns = 10 * kMillisecond;
+  imu.ppm = 100;
+  imu.run(60 * kSecond);
+  imu.way = [](std::int64_t ready_ns, Random&) { return ready_ns + 4 * kMillisecond; };
+  EXPECT_LT(imu.run(20 * kSecond), 100'000) << "by the least delay alone it would be 2 ms";
+}
+
 TEST(DeviceClock, CountsARestartOfTheDevice) {
-  Simulation simulation;
-  std::int64_t t = kEpoch;
-  for (; t < kEpoch + 2 * kSecond; t += kPacket) simulation.packet(t);
-  simulation.device_at_start = kHour - 2 * kSecond - 10 * kSecond;  // near its 0
-  t += 8 * kSecond;
-  EXPECT_TRUE(simulation.packet(t));
-  EXPECT_EQ(simulation.clock.device_restarts(), 1U);
-  EXPECT_EQ(simulation.clock.host_steps(), 0U);
-  for (; t < kEpoch + 12 * kSecond; t += kPacket) simulation.packet(t);
-  EXPECT_LT(std::abs(simulation.error(t)), 50'000);
+  Scenario lidar;
+  lidar.run(2 * kSecond);
+  lidar.device_at_start_ns = kHour - 2 * kSecond - 10 * kSecond;  // near its 0
+  lidar.skip(8 * kSecond);
+  bool told = false;
+  for (int i = 0; i < 100 && !told; ++i) {
+    told = lidar.sample();
+    EXPECT_LT(std::abs(lidar.error()), 50 * kMillisecond) << "about the time of arrival";
+  }
+  EXPECT_TRUE(told);
+  EXPECT_EQ(lidar.clock.device_restarts(), 1U);
+  EXPECT_EQ(lidar.clock.host_steps(), 0U);
+  EXPECT_EQ(lidar.clock.state(), ClockState::unsynchronised);
+  EXPECT_LT(lidar.run(4 * kSecond, kSecond / 10), 50'000);
+  EXPECT_EQ(lidar.clock.state(), ClockState::estimated);
 }
 
 TEST(DeviceClock, CountsStepsOfTheHostsClock) {
   for (const std::int64_t step :
        {-3600 * kSecond, -2 * kSecond, 5 * kSecond, 3600 * kSecond + 77}) {
-    DeviceClock clock(kHour);
-    std::int64_t device = 0;
-    for (int i = 0; i < 1000; ++i, device += kPacket) clock.update(device, kEpoch + device);
+    Scenario lidar;
+    lidar.run(2 * kSecond);
+    lidar.host_step_ns = step;
+    lidar.run(2 * kSecond);
     // A whole hour forward cannot be told from a gap of as long, but the times come out right.
-    const bool told = clock.update(device, kEpoch + device + step);
-    EXPECT_EQ(told, step < 3600 * kSecond) << step;
-    EXPECT_EQ(clock.host_steps(), told ? 1U : 0U);
-    EXPECT_EQ(clock.device_restarts(), 0U);
-    EXPECT_NEAR(static_cast<double>(clock.to_host(device) - kEpoch - device - step), 0, 1e6);
+    EXPECT_EQ(lidar.clock.host_steps(), step < 3600 * kSecond ? 1U : 0U) << step;
+    EXPECT_EQ(lidar.clock.device_restarts(), 0U);
+    EXPECT_LT(lidar.run(kSecond), 50'000);
   }
 }
 
 TEST(DeviceClock, CountsASmallStepForwardAfterASecond) {
-  DeviceClock clock(kHour);
-  std::int64_t device = 0;
-  for (int i = 0; i < 1000; ++i, device += kPacket) clock.update(device, kEpoch + device);
-  for (int i = 0; i < 1000; ++i, device += kPacket) {
-    clock.update(device, kEpoch + device + 300 * kMillisecond);
+  for (const std::int64_t step : {8 * kMillisecond, 300 * kMillisecond}) {
+    Scenario lidar;
+    lidar.run(2 * kSecond);
+    lidar.host_step_ns = step;
+    lidar.run(3 * kSecond / 2);
+    EXPECT_EQ(lidar.clock.host_steps(), 1U);
+    EXPECT_LT(lidar.run(kSecond), 50'000) << step;
   }
-  EXPECT_EQ(clock.host_steps(), 1U);
-  EXPECT_NEAR(static_cast<double>(clock.to_host(device) - kEpoch - device - 300 * kMillisecond), 0,
-              1e3);
+}
+
+TEST(DeviceClock, FollowsASmallStepBackwardsWithoutRunningBackwards) {
+  Scenario lidar;
+  lidar.run(30 * kSecond);
+  lidar.host_step_ns = -10 * kMillisecond;
+  std::int64_t before = lidar.host();
+  for (int i = 0; i < 100; ++i) {
+    lidar.sample();
+    EXPECT_GT(lidar.host(), before);
+    before = lidar.host();
+  }
+  EXPECT_LT(lidar.run(kSecond), 50'000);
+  EXPECT_EQ(lidar.jumps(), 0U);
 }
 
 TEST(DeviceClock, AHostThatWasBusyIsNoStep) {
-  DeviceClock clock(kHour);
-  std::int64_t device = 0;
-  for (int i = 0; i < 3000; ++i, device += kPacket) {
-    const bool busy = i % 600 < 300;  // 0.4 s during which all packets wait
-    clock.update(device, kEpoch + device + (busy ? 200 * kMillisecond : 0));
+  Scenario lidar;
+  lidar.way = [](std::int64_t ready_ns, Random&) {
+    const bool is_busy = ready_ns / (kSecond / 2) % 2 == 0;  // half a second, all packets late
+    return ready_ns + (is_busy ? 200 * kMillisecond : 0);
+  };
+  EXPECT_LT(lidar.run(5 * kSecond, 3 * kSecond / 2), 50'000);
+  EXPECT_EQ(lidar.jumps(), 0U);
+}
+
+TEST(DeviceClock, WhatWaitedInABufferKeepsItsTimes) {
+  for (const std::int64_t stall : {300 * kMillisecond, 1500 * kMillisecond}) {
+    Scenario imu;
+    imu.sample_ns = 10 * kMillisecond;
+    imu.run(20 * kSecond);
+    const std::int64_t until = imu.now() + stall;
+    imu.way = [&](std::int64_t ready_ns, Random&) { return std::max(ready_ns, until); };
+    EXPECT_LT(imu.run(5 * kSecond), 100'000);
+    EXPECT_EQ(imu.jumps(), 0U);
   }
-  EXPECT_EQ(clock.host_steps(), 1U) << "the very first packet was late; none after it is a step";
+}
+
+TEST(DeviceClock, GarbledStampsAreLeftOut) {
+  Scenario imu(4'294'967'296 * 100'000);
+  imu.sample_ns = 10 * kMillisecond;
+  imu.run(10 * kSecond);
+  std::uint64_t garbled = 0;
+  for (int i = 0; i < 5000; ++i) {
+    if (i % 50 == 7) {
+      const auto by = static_cast<std::int64_t>(imu.random()()) * 100'000 + 2 * kSecond;
+      EXPECT_FALSE(imu.sample(by));
+      EXPECT_EQ(imu.error() + by, imu.delay() + by) << "it is given its time of arrival";
+      ++garbled;
+    } else if (i % 1500 == 3) {
+      imu.sample(20 * kMillisecond);  // a few bits only
+    } else {
+      imu.sample();
+      EXPECT_LT(std::abs(imu.error()), 50'000) << i;
+    }
+  }
+  EXPECT_EQ(imu.clock.implausible(), garbled);
+  EXPECT_EQ(imu.jumps(), 0U);
+}
+
+TEST(DeviceClock, ReorderedAndRepeatedStampsDoNoHarm) {
+  Scenario lidar;
+  lidar.run(5 * kSecond);
+  for (int i = 0; i < 2000; ++i) {
+    lidar.sample();
+    const std::int64_t time = lidar.now() - kPacket, stamp = lidar.device(time);
+    const std::int64_t arrival = time + lidar.least_delay_ns + lidar.delay();
+    if (i % 3 == 0) {
+      EXPECT_FALSE(lidar.clock.update(stamp, arrival + 1000));
+    }
+    if (i % 5 == 0) {
+      const std::int64_t older = lidar.device(time - 7 * kPacket);
+      EXPECT_FALSE(lidar.clock.update(older, arrival + 2000));
+      EXPECT_NEAR(static_cast<double>(lidar.clock.to_host(older)),
+                  static_cast<double>(lidar.host() - 7 * kPacket), 100);
+    }
+    ASSERT_LT(std::abs(lidar.error()), 50'000);
+  }
+  EXPECT_EQ(lidar.jumps(), 0U);
+}
+
+TEST(DeviceClock, AClockThatStoodStillIsFollowedOnceItRuns) {
+  Scenario lidar;
+  lidar.run(2 * kSecond);
+  const std::int64_t stamp = lidar.device(lidar.now());
+  for (int i = 0; i < 5000; ++i, lidar.skip(kPacket)) {
+    lidar.clock.update(stamp, lidar.now());
+    EXPECT_LE(lidar.clock.to_host(stamp), lidar.now() + kMillisecond);
+  }
+  EXPECT_LT(lidar.run(5 * kSecond, 2 * kSecond), 50'000);
+}
+
+TEST(DeviceClock, SurvivesAnyTimes) {
+  std::mt19937_64 random(5);
+  DeviceClock clock(kHour);
+  for (int i = 0; i < 100'000; ++i) {
+    const auto any = [&](std::int64_t below) {
+      return static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(below));
+    };
+    const std::int64_t device = any(kHour);
+    clock.update(random() % 2 == 0 ? device : i * kMillisecond, kEpoch + any(1'000'000 * kSecond));
+    if (i % 10 == 0) clock.pps(kEpoch + any(1'000'000 * kSecond));
+    EXPECT_GE(clock.to_host(device), 0);
+    EXPECT_GE(clock.accuracy_ns(), 0);
+  }
 }
 
 }  // namespace

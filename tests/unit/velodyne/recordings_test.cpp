@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <map>
 #include <memory>
@@ -15,21 +14,11 @@
 
 #include "scree/capture/pcap_reader.hpp"
 #include "scree/drivers/velodyne/lidar_stream.hpp"
+#include "unit/recordings.hpp"
 #include "unit/temporary_folder.hpp"
 
 namespace scree::velodyne {
 namespace {
-
-namespace fs = std::filesystem;
-
-fs::path shared(const char* name) {
-  return fs::path(SCREE_SHARED_DATA) / name;
-}
-
-#define NEEDS(file)                                                      \
-  if (!fs::exists(shared(file))) {                                       \
-    GTEST_SKIP() << "the recording " << shared(file) << " is not there"; \
-  }
 
 struct Return {
   std::uint64_t packet;

@@ -8,7 +8,7 @@
 
 // Writes Xbus messages by the documentation alone (MT0101P): the other side of the decoder, which
 // shares no code with it.
-namespace scree::xsens::test {
+namespace scree::test {
 
 using ByteVector = std::vector<std::uint8_t>;
 
@@ -87,4 +87,4 @@ inline ByteVector data_message(std::initializer_list<ByteVector> items) {
   return message(0x36, joined(items));
 }
 
-}  // namespace scree::xsens::test
+}  // namespace scree::test

@@ -13,7 +13,7 @@ namespace scree {
 /// A datagram as the kernel hands it over.
 struct ReceivedDatagram {
   std::span<const std::uint8_t> bytes;  ///< in the buffer given to receive()
-  std::int64_t arrival_ns = 0;          ///< when the kernel took it in, host time
+  std::int64_t arrival_ns = 0;          ///< when the kernel took it in, wall clock
   std::uint32_t sender = 0;             ///< IPv4 address, host byte order
   bool truncated = false;               ///< it was longer than the buffer; the rest is lost
 };

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "scree/drivers/xsens/refusal.hpp"
 #include "scree/drivers/xsens/wire.hpp"
@@ -15,6 +16,10 @@ struct Message {
   std::size_t size = 0;          ///< on the wire, header and checksum included
   std::size_t bytes_behind = 0;  ///< of the same take(), after the message
 };
+
+/// Writes a message with its checksum into `out` and gives its size.
+/// @pre data has at most 254 bytes and `out` room for 5 more
+std::size_t write_message(MessageId id, Bytes data, std::span<std::uint8_t> out);
 
 struct FramingCounters {
   std::uint64_t messages = 0;       ///< found

@@ -33,6 +33,7 @@ enum class MessageId : std::uint8_t {
   go_to_config_ack = 0x31,
   mt_data2 = 0x36,
   wake_up = 0x3E,
+  wake_up_ack = 0x3F,
   reset = 0x40,
   reset_ack = 0x41,
   error = 0x42,

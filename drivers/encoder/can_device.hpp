@@ -1,0 +1,19 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "scree/drivers/encoder/can_socket.hpp"
+
+namespace scree::encoder {
+
+struct CanId {
+  std::uint32_t id;
+  bool is_extended;
+};
+
+/// The real interface. @param only listen for this identifier (and for error frames); without it
+/// for all
+CanSocket::Device can_device(const std::string& interface, std::optional<CanId> only);
+
+}  // namespace scree::encoder

@@ -1,0 +1,176 @@
+#include "dbc_text.hpp"
+
+#include <charconv>
+#include <cmath>
+
+#include "scree/core/can_frame.hpp"
+
+namespace scree::encoder {
+namespace {
+
+constexpr std::uint32_t kExtendedFlag = 0x80000000;
+
+bool is_name(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+}
+
+/// Reads a line piece by piece, with blanks between any two; after a piece that is not there
+/// nothing more is read.
+class Scanner {
+public:
+  explicit Scanner(std::string_view line) : rest_(line) {}
+
+  bool is_good() const { return is_good_; }
+
+  void expect(std::string_view text) {
+    skip_blanks();
+    if (!rest_.starts_with(text)) return stop();
+    rest_.remove_prefix(text.size());
+  }
+  bool take(char c) {
+    skip_blanks();
+    if (!rest_.starts_with(c)) return false;
+    rest_.remove_prefix(1);
+    return true;
+  }
+  /// A keyword or a name.
+  std::string_view name() {
+    skip_blanks();
+    std::size_t length = 0;
+    while (length < rest_.size() && is_name(rest_[length])) ++length;
+    const std::string_view name = rest_.substr(0, length);
+    if (name.empty()) stop();
+    rest_.remove_prefix(length);
+    return name;
+  }
+  template <class T>
+  T number() {
+    skip_blanks();
+    if (rest_.starts_with('+')) rest_.remove_prefix(1);
+    T value{};
+    const auto [end, error] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), value);
+    if (error != std::errc()) stop();
+    rest_.remove_prefix(static_cast<std::size_t>(end - rest_.data()));
+    return value;
+  }
+  /// What stands between the next two quotes; empty where there are none.
+  std::string_view quoted() {
+    const std::size_t begin = rest_.find('"');
+    if (begin == std::string_view::npos) return {};
+    rest_.remove_prefix(begin + 1);
+    return rest_.substr(0, rest_.find('"'));
+  }
+
+private:
+  void skip_blanks() {
+    while (rest_.starts_with(' ') || rest_.starts_with('\t')) rest_.remove_prefix(1);
+  }
+  void stop() {
+    is_good_ = false;
+    rest_ = {};
+  }
+
+  std::string_view rest_;
+  bool is_good_ = true;
+};
+
+bool is_keyword(Scanner& scanner, std::string_view keyword) {
+  return scanner.name() == keyword;
+}
+
+void set_id(MessageLine& message, std::uint32_t id) {
+  message.is_extended = (id & kExtendedFlag) != 0;
+  message.id = id & kLargestExtendedId;
+}
+
+bool fits_a_frame(const DbcSignal& signal) {
+  constexpr int kBits = 512;
+  if (signal.start_bit < 0 || signal.start_bit >= kBits) return false;
+  if (signal.length < 1 || signal.length > 64) return false;
+  EncoderSettings layout;
+  layout.start_bit = signal.start_bit;
+  layout.length = signal.length;
+  layout.byte_order = signal.byte_order;
+  return layout.frame_bytes() <= kBits / 8;
+}
+
+}  // namespace
+
+bool DbcText::next(std::string_view& line) {
+  while (!rest_.empty()) {
+    const std::size_t length = rest_.find('\n');
+    line = rest_.substr(0, length);
+    rest_.remove_prefix(length == std::string_view::npos ? rest_.size() : length + 1);
+    const bool began_quoted = is_quoted_;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      if (line[i] == '\\')
+        ++i;  // \" is a quote inside
+      else if (line[i] == '"')
+        is_quoted_ = !is_quoted_;
+    }
+    if (!began_quoted) return true;
+  }
+  return false;
+}
+
+std::optional<MessageLine> parse_message_line(std::string_view line) {
+  Scanner scanner(line);
+  if (!is_keyword(scanner, "BO_")) return std::nullopt;
+  MessageLine message;
+  set_id(message, scanner.number<std::uint32_t>());
+  message.name = scanner.name();
+  scanner.expect(":");
+  if (!scanner.is_good()) return std::nullopt;
+  return message;
+}
+
+std::optional<SignalLine> parse_signal_line(std::string_view line) {
+  Scanner scanner(line);
+  if (!is_keyword(scanner, "SG_")) return std::nullopt;
+  SignalLine result;
+  result.name = scanner.name();
+  if (!scanner.is_good()) return std::nullopt;
+  DbcSignal& signal = result.signal;
+  if (!scanner.take(':')) {
+    // M is the selector, which is in every frame; m0 (or m0M) only in those where it is 0.
+    if (scanner.name().starts_with('m')) result.fault = "is multiplexed: not in every frame";
+    scanner.expect(":");
+  }
+  signal.start_bit = scanner.number<int>();
+  scanner.expect("|");
+  signal.length = scanner.number<int>();
+  scanner.expect("@");
+  const bool is_little = scanner.take('1');
+  if (!is_little) scanner.expect("0");
+  signal.byte_order = is_little ? ByteOrder::little_endian : ByteOrder::big_endian;
+  signal.is_signed = scanner.take('-');
+  if (!signal.is_signed) scanner.expect("+");
+  scanner.expect("(");
+  signal.factor = scanner.number<double>();
+  scanner.expect(",");
+  signal.offset = scanner.number<double>();
+  scanner.expect(")");
+  signal.unit = scanner.quoted();
+  if (!scanner.is_good()) {
+    result.fault = "has a line that cannot be read";
+  } else if (!fits_a_frame(signal)) {
+    result.fault = "lies outside of any frame, or is not 1 to 64 bits long";
+  } else if (!std::isnormal(signal.factor) || !std::isfinite(signal.offset)) {
+    result.fault = "has a factor or an offset that is no number to scale with";
+  }
+  return result;
+}
+
+std::optional<MessageLine> parse_float_line(std::string_view line) {
+  Scanner scanner(line);
+  if (!is_keyword(scanner, "SIG_VALTYPE_")) return std::nullopt;
+  MessageLine message;
+  set_id(message, scanner.number<std::uint32_t>());
+  message.name = scanner.name();
+  scanner.take(':');
+  const int type = scanner.number<int>();
+  if (!scanner.is_good() || type == 0) return std::nullopt;
+  return message;
+}
+
+}  // namespace scree::encoder

@@ -1,0 +1,40 @@
+#include "scree/drivers/encoder/encoder_stream.hpp"
+
+#include <numeric>
+#include <utility>
+
+#include "scree/drivers/encoder/signal.hpp"
+
+namespace scree::encoder {
+
+std::uint64_t EncoderCounters::all_refused() const {
+  return std::accumulate(refused.begin(), refused.end(), std::uint64_t{0});
+}
+
+EncoderStream::EncoderStream(const EncoderSettings& settings, OnSample on_sample,
+                             OnReading on_reading)
+    : settings_(settings),
+      on_sample_(std::move(on_sample)),
+      on_reading_(std::move(on_reading)),
+      odometer_(settings) {}
+
+void EncoderStream::take(const CanFrame& frame) {
+  if (frame.is_error) return refuse(Refusal::error_frame);
+  if (frame.id != settings_.can_id || frame.is_extended != settings_.has_extended_id()) {
+    ++counters_.other;
+    return;
+  }
+  if (frame.is_remote) return refuse(Refusal::remote);
+  const auto raw = read_signal(settings_, frame.payload());
+  if (!raw) return refuse(Refusal::size);
+
+  const Reading reading{frame.t_ns, *raw, scaled(settings_, *raw)};
+  if (on_reading_) on_reading_(reading);
+  const Refusal refusal = odometer_.take(reading);
+  counters_.rebased = odometer_.rebased();
+  if (refusal != Refusal::none) return refuse(refusal);
+  ++counters_.accepted;
+  if (on_sample_) on_sample_({reading.t_ns, reading.raw, reading.value, odometer_.distance()});
+}
+
+}  // namespace scree::encoder

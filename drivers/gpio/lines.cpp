@@ -1,0 +1,92 @@
+#include "scree/drivers/gpio/lines.hpp"
+
+#include <time.h>
+
+#include <cstdlib>
+#include <utility>
+
+#include "libgpiod.hpp"
+
+namespace scree::gpio {
+namespace {
+
+std::int64_t now_ns(clockid_t clock) {
+  timespec now;
+  clock_gettime(clock, &now);
+  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+}
+
+Result<LineHandle> open_line(const std::string& name, bool is_active_low, bool is_output,
+                             bool is_on) {
+  const std::size_t colon = name.rfind(':');
+  if (colon == std::string::npos || colon == 0 || colon + 1 == name.size()) {
+    return fail("must be CHIP:LINE, as gpiochip0:17 is");
+  }
+  return request({name.substr(0, colon), name.substr(colon + 1), is_active_low, is_output, is_on});
+}
+
+/// The error of a key, which it names.
+tl::unexpected<Error> of_key(const char* key, const std::string& name, const Error& error) {
+  return fail(std::string("gpio.") + key + " = \"" + name + "\": " + error.message);
+}
+
+}  // namespace
+
+Result<Output> Output::open(const std::string& name, bool is_active_low, bool is_on) {
+  auto line = open_line(name, is_active_low, true, is_on);
+  if (!line) return tl::make_unexpected(line.error());
+  Output output;
+  output.line_ = std::move(*line);
+  return output;
+}
+
+bool Output::set(bool is_on) {
+  return gpio::set(*line_, is_on);
+}
+
+Result<PulseInput> PulseInput::open(const std::string& name, bool is_active_low) {
+  auto line = open_line(name, is_active_low, false, false);
+  if (!line) return tl::make_unexpected(line.error());
+  PulseInput input;
+  input.line_ = std::move(*line);
+  return input;
+}
+
+std::optional<std::int64_t> PulseInput::read() {
+  const auto stamp_ns = read_edge(*line_);
+  if (!stamp_ns) return std::nullopt;
+  return edge_host_ns(*stamp_ns, now_ns(CLOCK_MONOTONIC), now_ns(CLOCK_REALTIME));
+}
+
+int PulseInput::descriptor() const {
+  return descriptor_of(*line_);
+}
+
+Result<Lines> Lines::open(const GpioSettings& settings) {
+  Lines lines;
+  if (!settings.pps.empty()) {
+    auto line = PulseInput::open(settings.pps, settings.pps_active_low);
+    if (!line) return of_key("pps", settings.pps, line.error());
+    lines.pps = std::move(*line);
+  }
+  if (!settings.stop.empty()) {
+    auto line = Output::open(settings.stop, settings.stop_active_low, true);
+    if (!line) return of_key("stop", settings.stop, line.error());
+    lines.stop = std::move(*line);
+  }
+  if (!settings.heartbeat.empty()) {
+    auto line = Output::open(settings.heartbeat, settings.heartbeat_active_low, false);
+    if (!line) return of_key("heartbeat", settings.heartbeat, line.error());
+    lines.heartbeat = std::move(*line);
+  }
+  return lines;
+}
+
+std::int64_t edge_host_ns(std::int64_t stamp_ns, std::int64_t monotonic_now_ns,
+                          std::int64_t host_now_ns) {
+  const bool is_monotonic =
+      std::abs(stamp_ns - monotonic_now_ns) < std::abs(stamp_ns - host_now_ns);
+  return is_monotonic ? stamp_ns + (host_now_ns - monotonic_now_ns) : stamp_ns;
+}
+
+}  // namespace scree::gpio

@@ -1,0 +1,129 @@
+#include "scree/drivers/xsens/device.hpp"
+
+#include <limits>
+#include <utility>
+
+namespace scree::xsens {
+namespace {
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+
+/// Between attempts to open a port that has gone ...
+constexpr std::int64_t kReopenAfter = kSecond / 2;
+/// ... and to start an MTi that did not answer or refused.
+constexpr std::int64_t kRestartAfter = 2 * kSecond;
+/// A device that says nothing for so long is started anew: it may have lost its power meanwhile.
+constexpr std::int64_t kSilence = 2 * kSecond;
+
+}  // namespace
+
+Device::Device(const ImuSettings& settings) : settings_(settings), start_up_(settings) {}
+
+Result<Device> Device::open(const ImuSettings& settings) {
+  if (const auto reason = line_too_slow(settings)) return fail(*reason);
+  Device device(settings);
+  auto port = SerialPort::open(settings.device, settings.baud);
+  if (!port) return tl::make_unexpected(port.error());
+  device.port_ = std::move(*port);
+  return device;
+}
+
+std::int64_t Device::due_ns() const {
+  switch (state_) {
+    case DeviceState::lost:
+      return retry_ns_;
+    case DeviceState::starting:
+      return start_up_.due_ns();
+    case DeviceState::measuring:
+      break;
+  }
+  return settings_.configure ? last_bytes_ns_ + kSilence : std::numeric_limits<std::int64_t>::max();
+}
+
+std::optional<ReceivedBytes> Device::advance(std::int64_t now_ns) {
+  if (state_ == DeviceState::lost) {
+    if (now_ns < retry_ns_) return std::nullopt;
+    reopen(now_ns);
+  }
+  if (state_ == DeviceState::starting) go_on_starting(now_ns);
+  if (state_ != DeviceState::measuring) return std::nullopt;
+
+  ReceivedBytes received;
+  switch (port_->receive(buffer_, received)) {
+    case SerialPort::Reading::bytes:
+      last_bytes_ns_ = now_ns;
+      counts_.bytes += received.bytes.size();
+      return received;
+    case SerialPort::Reading::nothing:
+      if (settings_.configure && now_ns - last_bytes_ns_ >= kSilence) {
+        ++counts_.silences;
+        problem_ = "the IMU on " + settings_.device + " has stopped sending";
+        start(now_ns);
+      }
+      break;
+    case SerialPort::Reading::lost:
+      ++counts_.losses;
+      lose("the serial port " + settings_.device + " has gone: was the IMU unplugged?",
+           now_ns + kReopenAfter);
+      break;
+  }
+  return std::nullopt;
+}
+
+void Device::reopen(std::int64_t now_ns) {
+  if (!port_) {
+    auto port = SerialPort::open(settings_.device, settings_.baud);
+    if (!port) return lose(port.error().message, now_ns + kReopenAfter);
+    port_ = std::move(*port);
+  }
+  start(now_ns);
+}
+
+void Device::start(std::int64_t now_ns) {
+  state_ = DeviceState::starting;
+  line_baud_ = 0;
+  start_up_.begin(now_ns);
+  serve_start_up(now_ns);
+}
+
+void Device::go_on_starting(std::int64_t now_ns) {
+  ReceivedBytes received;
+  const SerialPort::Reading reading = port_->receive(buffer_, received);
+  if (reading == SerialPort::Reading::lost) {
+    ++counts_.losses;
+    return lose("the serial port " + settings_.device + " has gone: was the IMU unplugged?",
+                now_ns + kReopenAfter);
+  }
+  if (reading == SerialPort::Reading::bytes) start_up_.take(received.bytes, now_ns);
+  start_up_.advance(now_ns);
+  serve_start_up(now_ns);
+}
+
+void Device::serve_start_up(std::int64_t now_ns) {
+  if (start_up_.baud() != line_baud_) {
+    // Bit rates that the port cannot do are passed over: no answer will come.
+    const auto set = port_->set_baud(start_up_.baud());
+    if (!set && start_up_.baud() == settings_.baud) {
+      return lose(set.error().message, now_ns + kRestartAfter);
+    }
+    line_baud_ = start_up_.baud();
+  }
+  // What does not go out is sent again when no answer comes.
+  if (const Bytes output = start_up_.take_output(); !output.empty()) port_->send(output);
+  if (start_up_.state() == StartUp::State::failed) {
+    lose(start_up_.problem() + " (on " + settings_.device + ")", now_ns + kRestartAfter);
+  } else if (start_up_.state() == StartUp::State::measuring) {
+    state_ = DeviceState::measuring;
+    last_bytes_ns_ = now_ns;
+    ++counts_.starts;
+  }
+}
+
+void Device::lose(std::string problem, std::int64_t retry_ns) {
+  problem_ = std::move(problem);
+  port_.reset();
+  state_ = DeviceState::lost;
+  retry_ns_ = retry_ns;
+}
+
+}  // namespace scree::xsens

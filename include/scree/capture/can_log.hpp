@@ -1,0 +1,77 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <string_view>
+
+#include "scree/core/can_frame.hpp"
+#include "scree/core/result.hpp"
+
+namespace scree {
+
+/// Why a line of a log was not used.
+enum class CanLineRefusal : std::uint8_t {
+  none,
+  form,        ///< not `(seconds.fraction) interface frame`
+  time,        ///< no time stamp of a host's clock
+  identifier,  ///< neither 3 nor 8 digits, or beyond its 11 or 29 bits
+  data         ///< no whole bytes, more than a frame holds, or CAN XL
+};
+inline constexpr std::size_t kCanLineRefusals = 5;
+
+/// For people.
+inline constexpr std::array<std::string_view, kCanLineRefusals> kCanLineReasons = {
+    "accepted", "not of the form (seconds.fraction) interface frame", "time stamp",
+    "identifier is neither 3 nor 8 hexadecimal digits in its range",
+    "data are not whole bytes, or more than a frame holds"};
+
+/// Reads one line as `candump -L` writes it, without its end; any bytes are safe. `interface` is a
+/// part of the line.
+///
+/// What it takes (can-utils, lib.h): `123#DEADBEEF` with up to 8 bytes, dots between them allowed,
+/// and a raw length code `_9` behind eight bytes; `123#R` and `123#R4`; CAN FD `123##1DEADBEEF`
+/// with a digit of flags; 8 digits for an extended identifier, and for an error frame, which has
+/// bit 29 set; one to nine digits of a second's fraction; ` R` or ` T`, the direction, at the end.
+CanLineRefusal parse_can_line(std::string_view line, CanFrame& frame, std::string_view& interface);
+
+struct CanLogCounters {
+  std::uint64_t frames = 0;                               ///< handed out
+  std::array<std::uint64_t, kCanLineRefusals> refused{};  ///< lines by CanLineRefusal; [none] is 0
+
+  std::uint64_t all_refused() const;
+};
+
+/// Reads a capture's can.log. Empty lines and those that begin with # are passed over.
+class CanLogReader {
+public:
+  static Result<CanLogReader> open(const std::filesystem::path& file);
+
+  /// False at the end of the file. What a refused line holds is left out and counted.
+  bool next(CanFrame& frame, std::string* interface = nullptr);
+
+  const CanLogCounters& counters() const { return counters_; }
+
+private:
+  std::ifstream stream_;
+  std::array<char, 512> line_{};  ///< twice the longest line that a frame needs
+  CanLogCounters counters_;
+};
+
+/// Writes a log as `candump -L` does, with microseconds.
+class CanLogWriter {
+public:
+  static Result<CanLogWriter> create(const std::filesystem::path& file);
+
+  void write(const CanFrame& frame, std::string_view interface);
+  /// Writes out what is buffered. An error (a full disk) shows itself here at the latest.
+  Result<void> close();
+
+private:
+  std::string name_;
+  std::ofstream stream_;
+};
+
+}  // namespace scree

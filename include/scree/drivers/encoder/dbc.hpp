@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "scree/config/settings.hpp"
+#include "scree/core/result.hpp"
+
+// DBC files, which describe what the frames of a CAN bus hold (Vector, "DBC File Format
+// Documentation", version 1.0/5: sections 8 Message Definitions and 8.2 Signal Definitions).
+namespace scree::encoder {
+
+/// One signal of one message.
+struct DbcSignal {
+  std::uint32_t id = 0;  ///< of the frame
+  bool is_extended = false;
+  int start_bit = 0, length = 0;
+  ByteOrder byte_order = ByteOrder::little_endian;
+  bool is_signed = false;
+  double factor = 1, offset = 0;  ///< raw * factor + offset is the physical value ...
+  std::string unit;               ///< ... in this unit, which is free text
+};
+
+/// Finds MESSAGE.SIGNAL in a file's text. Lines that are none of BO_, SG_ and SIG_VALTYPE_ are
+/// passed over, those that are and cannot be read too. One sentence where there is no such message
+/// or signal (with the names that are nearest), where it is multiplexed or a floating-point number,
+/// or does not fit a frame. `origin` stands for the file's name in it.
+Result<DbcSignal> find_signal(std::string_view dbc, std::string_view name,
+                              const std::string& origin);
+
+/// Settings with the place of the signal from their DBC file; as they are where they name none.
+/// `scale` then multiplies the physical value, whose unit is often km/h: a sentence too where that
+/// unit is known and the scale cannot be meant for it, or for this kind.
+/// @param config_folder where the configuration lies, for a relative path
+Result<EncoderSettings> with_dbc(const EncoderSettings& settings,
+                                 const std::filesystem::path& config_folder);
+
+}  // namespace scree::encoder

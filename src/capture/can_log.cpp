@@ -1,0 +1,181 @@
+#include "scree/capture/can_log.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+#include <numeric>
+
+namespace scree {
+namespace {
+
+constexpr std::uint32_t kErrorFlag = 0x20000000;  // CAN_ERR_FLAG of linux/can.h
+constexpr std::size_t kClassicSize = 8;
+
+/// A whole number of exactly these digits.
+template <class T>
+bool read_number(std::string_view digits, int base, T& value) {
+  if (digits.empty()) return false;
+  const char* const end = digits.data() + digits.size();
+  const auto [stop, error] = std::from_chars(digits.data(), end, value, base);
+  return error == std::errc() && stop == end && digits.front() != '-';
+}
+
+/// Cuts off what stands before the separator, which must be there.
+bool cut(std::string_view& text, char separator, std::string_view& before) {
+  const std::size_t at = text.find(separator);
+  if (at == std::string_view::npos) return false;
+  before = text.substr(0, at);
+  text.remove_prefix(at + 1);
+  return true;
+}
+
+/// `1598601600.123456`
+bool read_time(std::string_view text, std::int64_t& t_ns) {
+  constexpr std::int64_t kMostSeconds = 9'000'000'000;
+  std::string_view whole;
+  std::int64_t seconds = 0, fraction = 0;
+  if (!cut(text, '.', whole) || text.size() > 9) return false;
+  if (!read_number(whole, 10, seconds) || !read_number(text, 10, fraction)) return false;
+  if (seconds > kMostSeconds) return false;
+  for (std::size_t digits = text.size(); digits < 9; ++digits) fraction *= 10;
+  t_ns = seconds * 1'000'000'000 + fraction;
+  return true;
+}
+
+bool read_identifier(std::string_view text, CanFrame& frame) {
+  if (!read_number(text, 16, frame.id)) return false;
+  if (text.size() == 3) return frame.id <= kLargestStandardId;
+  if (text.size() != 8) return false;
+  frame.is_error = (frame.id & kErrorFlag) != 0;
+  frame.is_extended = !frame.is_error;
+  frame.id &= ~kErrorFlag;
+  return frame.id <= kLargestExtendedId;
+}
+
+bool read_data(std::string_view text, std::size_t most, CanFrame& frame) {
+  frame.size = 0;
+  while (!text.empty()) {
+    if (text.front() == '.') text.remove_prefix(1);
+    if (text.size() < 2 || frame.size == most) return false;
+    if (!read_number(text.substr(0, 2), 16, frame.data[frame.size++])) return false;
+    text.remove_prefix(2);
+  }
+  return true;
+}
+
+/// What follows the first #.
+bool read_content(std::string_view text, CanFrame& frame) {
+  if (text.starts_with('#')) {
+    std::uint8_t flags = 0;
+    return read_number(text.substr(1, 1), 16, flags) &&
+           read_data(text.substr(2), frame.data.size(), frame);
+  }
+  if (text.starts_with('R')) {
+    frame.is_remote = true;
+    frame.size = 0;
+    return !frame.is_error && (text.size() == 1 || (read_number(text.substr(1), 16, frame.size) &&
+                                                    frame.size <= kClassicSize));
+  }
+  constexpr std::size_t kFull = 2 * kClassicSize;
+  if (text.size() == kFull + 2 && text[kFull] == '_') text = text.substr(0, kFull);
+  return read_data(text, kClassicSize, frame);
+}
+
+}  // namespace
+
+CanLineRefusal parse_can_line(std::string_view line, CanFrame& frame, std::string_view& interface) {
+  frame = {};
+  std::string_view time, identifier;
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  if (line.ends_with(" R") || line.ends_with(" T")) line.remove_suffix(2);
+  if (!line.starts_with('(')) return CanLineRefusal::form;
+  line.remove_prefix(1);
+  if (!cut(line, ')', time) || !line.starts_with(' ')) return CanLineRefusal::form;
+  line.remove_prefix(1);
+  if (!cut(line, ' ', interface) || interface.empty()) return CanLineRefusal::form;
+  if (!cut(line, '#', identifier)) return CanLineRefusal::form;
+  if (!read_time(time, frame.t_ns)) return CanLineRefusal::time;
+  if (!read_identifier(identifier, frame)) return CanLineRefusal::identifier;
+  return read_content(line, frame) ? CanLineRefusal::none : CanLineRefusal::data;
+}
+
+std::uint64_t CanLogCounters::all_refused() const {
+  return std::accumulate(refused.begin(), refused.end(), std::uint64_t{0});
+}
+
+Result<CanLogReader> CanLogReader::open(const std::filesystem::path& file) {
+  CanLogReader reader;
+  reader.stream_.open(file, std::ios::binary);
+  std::error_code ignored;
+  if (!reader.stream_ || std::filesystem::is_directory(file, ignored)) {
+    return fail(fmt::format("cannot read {}", file.string()));
+  }
+  return reader;
+}
+
+bool CanLogReader::next(CanFrame& frame, std::string* interface) {
+  while (stream_) {
+    stream_.getline(line_.data(), static_cast<std::streamsize>(line_.size()));
+    auto length = static_cast<std::size_t>(stream_.gcount());
+    if (stream_.eof() && length == 0) return false;
+    if (stream_.fail() && !stream_.eof()) {
+      if (stream_.bad()) return false;
+      stream_.clear();
+      stream_.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+      ++counters_.refused[static_cast<std::size_t>(CanLineRefusal::form)];
+      continue;
+    }
+    if (!stream_.eof()) --length;  // the line's end is counted
+    const std::string_view line(line_.data(), length);
+    if (line.empty() || line == "\r" || line.starts_with('#')) continue;
+    std::string_view name;
+    const CanLineRefusal refusal = parse_can_line(line, frame, name);
+    if (refusal == CanLineRefusal::none) {
+      ++counters_.frames;
+      if (interface != nullptr) *interface = name;
+      return true;
+    }
+    ++counters_.refused[static_cast<std::size_t>(refusal)];
+  }
+  return false;
+}
+
+Result<CanLogWriter> CanLogWriter::create(const std::filesystem::path& file) {
+  CanLogWriter writer;
+  writer.name_ = file.string();
+  writer.stream_.open(file, std::ios::binary);
+  if (!writer.stream_) return fail(fmt::format("cannot write {}", file.string()));
+  return writer;
+}
+
+void CanLogWriter::write(const CanFrame& frame, std::string_view interface) {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  fmt::memory_buffer line;
+  const auto out = std::back_inserter(line);
+  fmt::format_to(out, "({:010}.{:06}) {} ", frame.t_ns / kSecond, frame.t_ns % kSecond / 1000,
+                 interface);
+  if (frame.is_error || frame.is_extended) {
+    fmt::format_to(out, "{:08X}#", frame.id | (frame.is_error ? kErrorFlag : 0));
+  } else {
+    fmt::format_to(out, "{:03X}#", frame.id);
+  }
+  if (frame.is_remote) {
+    fmt::format_to(out, "R");
+    if (frame.size > 0) fmt::format_to(out, "{:X}", frame.size);
+  } else if (frame.size > kClassicSize) {
+    fmt::format_to(out, "#0");
+  }
+  for (const std::uint8_t byte : frame.payload()) fmt::format_to(out, "{:02X}", byte);
+  line.push_back('\n');
+  stream_.write(line.data(), static_cast<std::streamsize>(line.size()));
+}
+
+Result<void> CanLogWriter::close() {
+  stream_.close();
+  if (!stream_) return fail(fmt::format("cannot write {}: the disk may be full", name_));
+  return {};
+}
+
+}  // namespace scree

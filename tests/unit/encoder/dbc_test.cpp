@@ -1,0 +1,178 @@
+#include "scree/drivers/encoder/dbc.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "unit/temporary_folder.hpp"
+
+namespace scree::encoder {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr std::string_view kDbc = R"(VERSION "2"
+NS_ :
+ CM_
+BU_: A B
+BO_ 464 WHEEL_SPEEDS: 8 VSA
+ SG_ FRONT_LEFT : 7|15@0+ (0.01,0) [0|250] "kph" EON
+ SG_ FRONT_RIGHT: 8|15@0- (1E-002,-40) [0|250] "km/h" EON
+
+BO_ 2566869221 Drive: 8 Vector__XXX
+ SG_ Ticks : 12|20@1- (1,0) [0|0] "" Vector__XXX
+ SG_ Way : 32 | 32 @1+ ( +0.5 , 1.5 ) [0|0] "m" A,B
+ SG_ Real : 0|32@1- (1,0) [0|0] "m/s" A
+ SG_ Mode M : 0|4@1+ (1,0) [0|0] "" A
+ SG_ Hidden m3 : 8|16@1+ (1,0) [0|0] "" A
+ SG_ Both m2M : 8|16@1+ (1,0) [0|0] "" A
+ SG_ Long : 0|65@1+ (1,0) [0|0] "" A
+ SG_ Outside : 500|32@1+ (1,0) [0|0] "" A
+ SG_ Flat : 0|8@1+ (0,0) [0|0] "" A
+ SG_ Odd : 0;8@1+ (1,0)
+
+CM_ SG_ 464 FRONT_LEFT "many lines,
+BO_ 1 IN_A_COMMENT: 8 A
+ SG_ Ghost : 0|8@1+ (1,0) [0|0] \"x\" A
+to here";
+BO_ 1 AFTER: 8 A
+ SG_ Late : 0|8@1+ (1,0) [0|0] "" A
+SIG_VALTYPE_ 2566869221 Real : 1;
+SIG_VALTYPE_ 464 FRONT_LEFT : 0;
+)";
+
+DbcSignal signal_of(std::string_view name) {
+  const auto signal = find_signal(kDbc, name, "robot.dbc");
+  EXPECT_TRUE(signal) << signal.error().message;
+  return signal.value_or(DbcSignal{});
+}
+
+std::string error_of(std::string_view name, std::string_view dbc = kDbc) {
+  const auto signal = find_signal(dbc, name, "robot.dbc");
+  return signal ? "no error" : signal.error().message;
+}
+
+TEST(Dbc, ReadsASignal) {
+  const DbcSignal left = signal_of("WHEEL_SPEEDS.FRONT_LEFT");
+  EXPECT_EQ(left.id, 464U);
+  EXPECT_FALSE(left.is_extended);
+  EXPECT_EQ(left.start_bit, 7);
+  EXPECT_EQ(left.length, 15);
+  EXPECT_EQ(left.byte_order, ByteOrder::big_endian);
+  EXPECT_FALSE(left.is_signed);
+  EXPECT_EQ(left.factor, 0.01);
+  EXPECT_EQ(left.offset, 0);
+  EXPECT_EQ(left.unit, "kph");
+  const DbcSignal right = signal_of("WHEEL_SPEEDS.FRONT_RIGHT");
+  EXPECT_TRUE(right.is_signed);
+  EXPECT_EQ(right.factor, 0.01);
+  EXPECT_EQ(right.offset, -40);
+  const DbcSignal way = signal_of("Drive.Way");
+  EXPECT_EQ(way.id, 0x18FF50E5U);
+  EXPECT_TRUE(way.is_extended);
+  EXPECT_EQ(way.start_bit, 32);
+  EXPECT_EQ(way.byte_order, ByteOrder::little_endian);
+  EXPECT_EQ(way.factor, 0.5);
+  EXPECT_EQ(way.offset, 1.5);
+  EXPECT_EQ(signal_of("Drive.Mode").length, 4);
+  EXPECT_EQ(signal_of("AFTER.Late").id, 1U);
+}
+
+TEST(Dbc, LineEndsOfDosChangeNothing) {
+  std::string dos;
+  for (const char c : kDbc) dos += c == '\n' ? std::string("\r\n") : std::string(1, c);
+  const auto signal = find_signal(dos, "WHEEL_SPEEDS.FRONT_LEFT", "robot.dbc");
+  ASSERT_TRUE(signal);
+  EXPECT_EQ(signal->unit, "kph");
+}
+
+TEST(Dbc, SaysWhyASignalCannotBeUsed) {
+  EXPECT_THAT(error_of("Drive.Hidden"), HasSubstr("multiplexed"));
+  EXPECT_THAT(error_of("Drive.Both"), HasSubstr("multiplexed"));
+  EXPECT_THAT(error_of("Drive.Real"), HasSubstr("floating-point"));
+  EXPECT_THAT(error_of("Drive.Long"), HasSubstr("64 bits"));
+  EXPECT_THAT(error_of("Drive.Outside"), HasSubstr("outside of any frame"));
+  EXPECT_THAT(error_of("Drive.Flat"), HasSubstr("factor"));
+  EXPECT_THAT(error_of("Drive.Odd"), HasSubstr("cannot be read"));
+  for (const char* name : {"", ".", "Drive", "Drive.", ".Way"}) {
+    EXPECT_THAT(error_of(name), HasSubstr("MESSAGE.SIGNAL")) << name;
+  }
+}
+
+TEST(Dbc, NamesWhatIsNearAMistypedName) {
+  EXPECT_THAT(error_of("WHEEL_SPEEDS.FRONT_LEFD"),
+              AllOf(HasSubstr("robot.dbc: message WHEEL_SPEEDS has no signal FRONT_LEFD"),
+                    HasSubstr("the nearest are FRONT_LEFT, FRONT_RIGHT")));
+  EXPECT_THAT(error_of("wheel_speed.FRONT_LEFT"),
+              AllOf(HasSubstr("no message wheel_speed"), HasSubstr("are WHEEL_SPEEDS, ")));
+  EXPECT_THAT(error_of("IN_A_COMMENT.Ghost"),
+              AllOf(HasSubstr("no message"), Not(HasSubstr("Ghost"))));
+  EXPECT_THAT(error_of("A.B", "not a file of that kind"), HasSubstr("no DBC file"));
+}
+
+TEST(Dbc, AnyBytesAreSafe) {
+  std::mt19937 random(1);
+  for (int round = 0; round < 2000; ++round) {
+    std::string text(kDbc);
+    for (int i = 0; i < 30; ++i) text[random() % text.size()] = static_cast<char>(random());
+    text.resize(random() % text.size());
+    const auto signal = find_signal(text, "Drive.Way", "robot.dbc");
+    if (signal) {
+      EXPECT_LE(signal->length, 64);
+    }
+  }
+}
+
+EncoderSettings settings_for(const std::string& signal, EncoderKind kind, double scale) {
+  EncoderSettings settings;
+  settings.dbc = "robot.dbc";
+  settings.signal = signal;
+  settings.kind = kind;
+  settings.scale = scale;
+  return settings;
+}
+
+TEST(WithDbc, FillsInTheSettings) {
+  const TemporaryFolder folder;
+  folder.write("robot.dbc", kDbc);
+  const auto filled = with_dbc(settings_for("Drive.Way", EncoderKind::counter, 1.01), folder / "");
+  ASSERT_TRUE(filled) << filled.error().message;
+  EXPECT_EQ(filled->can_id, 0x18FF50E5);
+  EXPECT_TRUE(filled->has_extended_id());
+  EXPECT_EQ(filled->start_bit, 32);
+  EXPECT_EQ(filled->length, 32);
+  EXPECT_FALSE(filled->is_signed);
+  EXPECT_EQ(filled->factor, 0.5);
+  EXPECT_EQ(filled->offset, 1.5);
+  EXPECT_EQ(filled->scale, 1.01);
+  const EncoderSettings without;
+  EXPECT_EQ(with_dbc(without, "/nonexistent")->can_id, without.can_id);
+}
+
+TEST(WithDbc, AScaleThatCannotBeForTheUnitIsRefused) {
+  const TemporaryFolder folder;
+  folder.write("robot.dbc", kDbc);
+  const auto error = [&](const std::string& signal, EncoderKind kind, double scale) {
+    const auto filled = with_dbc(settings_for(signal, kind, scale), folder / "");
+    return filled ? "no error" : filled.error().message;
+  };
+  const std::string left = "WHEEL_SPEEDS.FRONT_LEFT";
+  EXPECT_EQ(error(left, EncoderKind::speed, 0.277778), "no error");
+  EXPECT_EQ(error(left, EncoderKind::speed, -0.27), "no error");
+  EXPECT_THAT(error(left, EncoderKind::speed, 1), HasSubstr("1 kph is 0.277778 m/s"));
+  EXPECT_THAT(error(left, EncoderKind::counter, 0.277778), HasSubstr("encoder.kind is counter"));
+  EXPECT_THAT(error("Drive.Way", EncoderKind::counter, 0.000157), HasSubstr("1 m is 1 m"));
+  EXPECT_EQ(error("Drive.Ticks", EncoderKind::counter, 0.000157), "no error");
+}
+
+TEST(WithDbc, AMissingFileIsOneSentence) {
+  const auto filled = with_dbc(settings_for("A.B", EncoderKind::counter, 1), "/nonexistent");
+  ASSERT_FALSE(filled);
+  EXPECT_THAT(filled.error().message, HasSubstr("robot.dbc"));
+}
+
+}  // namespace
+}  // namespace scree::encoder

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "scree/capture/can_log.hpp"
+#include "scree/config/settings.hpp"
+#include "scree/drivers/encoder/encoder_stream.hpp"
+
+namespace scree::cli {
+
+/// The encoder's settings of a capture, with what their DBC file says: see capture_settings().
+/// Throws Failure.
+EncoderSettings encoder_settings(const std::filesystem::path& capture,
+                                 const std::filesystem::path& config);
+
+/// The encoder's part of a capture, and what was seen of it while it was played.
+class EncoderCapture {
+public:
+  /// Throws Failure.
+  EncoderCapture(const std::filesystem::path& capture, const EncoderSettings& settings);
+
+  /// Plays all frames of the encoder's interface into the stream.
+  void play(encoder::EncoderStream& stream);
+
+  /// Says on stderr what was refused, and why. Throws Failure when no signal was read.
+  void report(const encoder::EncoderStream& stream) const;
+
+private:
+  std::string why_nothing(const encoder::EncoderStream& stream) const;
+
+  std::string name_;
+  CanLogReader log_;
+  EncoderSettings settings_;
+  std::map<std::string, std::uint64_t> frames_;  // by interface
+};
+
+}  // namespace scree::cli
