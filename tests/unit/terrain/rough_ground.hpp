@@ -10,14 +10,16 @@
 
 namespace scree::test {
 
-/// Uneven ground about z = 0 with slopes to 20 degrees in all directions; or a level plane.
+/// Uneven ground about z = `level` with slopes to 20 degrees in all directions; or a plane.
 struct RoughGround {
   double roughness = 1;
+  double level = 0;  ///< metres
 
   double height(double x, double y) const {
-    return roughness *
-           (0.11 * std::sin(1.1 * x + 0.3 * y + 0.5) + 0.09 * std::sin(0.9 * y - 0.4 * x) +
-            0.05 * std::sin(2.1 * x + 1.7 * y + 2) + 0.03 * std::sin(3.3 * y - 2.2 * x));
+    return level +
+           roughness *
+               (0.11 * std::sin(1.1 * x + 0.3 * y + 0.5) + 0.09 * std::sin(0.9 * y - 0.4 * x) +
+                0.05 * std::sin(2.1 * x + 1.7 * y + 2) + 0.03 * std::sin(3.3 * y - 2.2 * x));
   }
   /// How far a beam goes; 0 when it goes farther than `farthest`.
   double range(const Eigen::Vector3d& from, const Eigen::Vector3d& along, double farthest) const {
@@ -41,7 +43,7 @@ inline LidarSettings usual_lidar() {
 
 /// One turn of 16 lasers over 0.1 s that ends at `end`, seconds.
 inline void scan(const RoughGround& ground, const SimpleDrive& drive, const LidarSettings& lidar,
-                 double end, Sweep& sweep, int columns = 360) {
+                 double end, Sweep& sweep, int columns = 200) {
   constexpr double kTurn = 0.1, kFarthest = 15;
   const Pose mount = lidar.mount();
   sweep.clear();
