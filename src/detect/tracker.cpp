@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 namespace scree {
 namespace {
@@ -51,7 +52,8 @@ void Tracker::update(std::int64_t stamp_ns, std::span<const Obstacle> found,
             is_empty                ? std::min(2 * share, 1.0F)
             : seen == Sight::unseen ? 0
                                     : share);
-      if (stamp_ns - track.found_ns > remembered_ns) continue;
+      // From the future, too, when the clock was set back.
+      if (std::abs(stamp_ns - track.found_ns) > remembered_ns) continue;
     }
     if (track.confidence() < 0.02F) continue;
     tracks_[kept++] = track;
@@ -92,8 +94,9 @@ void Tracker::match(std::span<const Obstacle> found) {
       const bool same_side = (tracks_[t].obstacle.height > 0) == (found[i].height > 0);
       if (!same_side || !may_be_same(tracks_[t].obstacle, found[i])) continue;
       const double distance = (tracks_[t].obstacle.center - found[i].center).head<2>().norm();
-      pairs_.push_back({static_cast<float>(distance), static_cast<std::uint32_t>(t),
-                        static_cast<std::uint32_t>(i)});
+      const Pair pair{static_cast<float>(distance), static_cast<std::uint32_t>(t),
+                      static_cast<std::uint32_t>(i)};
+      if (!pairs_.push_back(pair)) ++dropped_;
     }
   }
   std::sort(pairs_.begin(), pairs_.end(), [](const Pair& a, const Pair& b) {

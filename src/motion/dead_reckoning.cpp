@@ -18,33 +18,40 @@ MotionTrack::Place MotionTrack::at(std::int64_t before_end_ns) const {
           late.translation + share * (early.translation - late.translation)};
 }
 
+/// Turns all of the step under way: its path stays as it is.
+void DeadReckoning::turn(const Eigen::Quaterniond& rotation) {
+  const auto turned = [&rotation](State& state) {
+    state.attitude = (rotation * state.attitude).normalized();
+    state.position = rotation * state.position;
+  };
+  turned(state_);
+  turned(begin_);
+  for (State& state : states_) turned(state);
+}
+
 void DeadReckoning::go_on(const SyncBuffer& sensors, std::int64_t t_ns) {
   const double seconds = static_cast<double>(t_ns - now_ns_) * 1e-9;
-  State next = state_;
   const auto attitude = sensors.attitude_at(t_ns);
-  next.knows_attitude = attitude.has_value();
+  const Eigen::Quaterniond guess = (state_.attitude * exponential(rate_ * seconds)).normalized();
+  const Eigen::Quaterniond seen =
+      attitude ? (attitude->rotation * imu_mount_.conjugate()).normalized() : guess;
   if (attitude) {
-    next.attitude = (attitude->rotation * imu_mount_.conjugate()).normalized();
+    if (!state_.knows_attitude) turn(seen * guess.conjugate());
     rate_ = imu_mount_ * attitude->rate;
-  } else {
-    next.attitude = (state_.attitude * exponential(rate_ * seconds)).normalized();
   }
+  State next = state_;
+  next.attitude = seen;
+  next.knows_attitude = attitude.has_value();
   const auto wheel = sensors.wheel_at(t_ns);
   next.knows_distance = wheel.has_value();
   double moved = speed_ * seconds;
   if (wheel) {
     // A wheel that was silent begins anew: what it rolled meanwhile has been guessed already.
-    if (state_.knows_distance)
-      moved = wheel->distance - wheel_;
-    else
-      moved = wheel->speed * seconds;
+    moved = state_.knows_distance ? wheel->distance - wheel_ : wheel->speed * seconds;
     wheel_ = wheel->distance;
     speed_ = wheel->speed;
   }
-  const Eigen::Quaterniond middle = state_.knows_attitude || !next.knows_attitude
-                                        ? state_.attitude.slerp(0.5, next.attitude)
-                                        : next.attitude;
-  next.position += middle * Eigen::Vector3d(moved, 0, 0);
+  next.position += state_.attitude.slerp(0.5, next.attitude) * Eigen::Vector3d(moved, 0, 0);
   distance_ += moved;
   state_ = next;
   now_ns_ = t_ns;
@@ -52,17 +59,21 @@ void DeadReckoning::go_on(const SyncBuffer& sensors, std::int64_t t_ns) {
 
 MotionStep DeadReckoning::advance(const SyncBuffer& sensors, std::int64_t begin_ns,
                                   std::int64_t end_ns, MotionTrack& track) {
-  if (!started_) {
-    now_ns_ = begin_ns;
-    started_ = true;
-    go_on(sensors, begin_ns);
-  }
   MotionStep step;
+  states_.clear();
+  state_.position.setZero();
+  begin_ = state_;
+  distance_ = 0;
+  begin_ns = std::min(begin_ns, end_ns);
+  const bool was_away = started_ && end_ns - now_ns_ > kLongestWaitNs;
   step.begin_ns = now_ns_;
   step.end_ns = end_ns;
-  const Eigen::Quaterniond attitude_before = state_.attitude;
-  state_.position.setZero();
-  distance_ = 0;
+  if (!started_ || was_away || end_ns <= now_ns_) {
+    step.begin_ns = was_away ? begin_ns - kLongestWaitNs : begin_ns;
+    now_ns_ = begin_ns;
+    go_on(sensors, begin_ns);
+    started_ = true;
+  }
 
   // The last part in equal steps, for the track; a long wait before it in coarser ones.
   constexpr std::int64_t kStep = MotionTrack::kLongestStepNs;
@@ -73,17 +84,17 @@ MotionStep DeadReckoning::advance(const SyncBuffer& sensors, std::int64_t begin_
   const std::int64_t tracked_ns = std::max<std::int64_t>(end_ns - now_ns_, 0);
   const std::int64_t steps = std::max<std::int64_t>((tracked_ns + kStep - 1) / kStep, 1);
   const std::int64_t from_ns = now_ns_;
-  states_.clear();
   states_.push_back(state_);
   for (std::int64_t i = 1; i <= steps; ++i) {
     go_on(sensors, from_ns + tracked_ns * i / steps);
     states_.push_back(state_);
   }
 
+  step.begin_attitude = begin_.attitude;
   step.attitude = state_.attitude;
   step.moved = state_.position;
   step.distance = distance_;
-  step.turned = attitude_before.angularDistance(state_.attitude);
+  step.turned = begin_.attitude.angularDistance(state_.attitude);
   step.knows_attitude = state_.knows_attitude;
   step.knows_distance = state_.knows_distance;
 

@@ -18,7 +18,7 @@ void deskew(const Sweep& sweep, const LidarSettings& lidar, const MotionTrack& t
   for (std::size_t i = 0; i < sweep.points.size(); ++i) {
     const Eigen::Vector3f seen(sweep.points.x[i], sweep.points.y[i], sweep.points.z[i]);
     const float square = seen.squaredNorm();
-    if (square < nearest || square > farthest) continue;
+    if (!(square >= nearest && square <= farthest)) continue;  // nor what is not a number
     if (sweep.time_ns[i] != placed_ns) {
       placed_ns = sweep.time_ns[i];
       const MotionTrack::Place base_at = track.at(-std::int64_t{placed_ns});

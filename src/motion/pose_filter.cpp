@@ -2,7 +2,9 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "scree/core/rotation.hpp"
 
@@ -24,7 +26,8 @@ constexpr double kShake = 0.001;       // metres in each direction each step
 constexpr double kSilentTurn = 0.25;   // turning while the IMU is silent, rad/s ...
 constexpr double kSilentTilt = 0.10;   // ... and tilting
 constexpr double kSilentSpeed = 0.4;   // m/s while the encoder is silent, at full speed
-constexpr double kAnotherYaw = 0.5;    // rad: an IMU that comes back with this has restarted
+constexpr double kAnotherYaw = 0.5;    // rad: an IMU that comes back with this has restarted ...
+constexpr double kAnotherYawError = 0.05;  // ... and takes up the yaw this well, rad
 
 double square(double value) {
   return value * value;
@@ -36,10 +39,10 @@ Eigen::Matrix3d cross(const Eigen::Vector3d& v) {
   return matrix;
 }
 
-/// What turns the vertical of a frame into that of `odom`.
+/// What turns the vertical of a frame, nearly upright, into that of `odom`.
 Eigen::Vector3d tilt_of(const Eigen::Quaterniond& frame) {
   const Eigen::Vector3d up = frame * Eigen::Vector3d::UnitZ();
-  return {-up.y(), up.x(), 0};
+  return {up.y(), -up.x(), 0};
 }
 
 }  // namespace
@@ -64,12 +67,14 @@ void PoseFilter::predict(const MotionStep& step) {
   const double seconds = step.seconds();
   if (knew_attitude_ && !step.knows_attitude) {
     level_before_ = level_;
-    tilt_before_ = covariance_(3, 3);
+    tilt_before_ = std::max(covariance_(3, 3), covariance_(4, 4));
     yaw_before_ = covariance_(5, 5);
     silent_s_ = 0;
+    has_known_attitude_ = true;
   }
   if (!step.knows_attitude) silent_s_ += seconds;
   const bool is_back = !knew_attitude_ && step.knows_attitude;
+  if (is_back) join(step);
   knew_attitude_ = step.knows_attitude;
 
   const Eigen::Vector3d moved = level_ * step.moved * (1 + scale_);
@@ -108,22 +113,27 @@ void PoseFilter::predict(const MotionStep& step) {
   covariance_(6, 6) += square(kScaleWalk) * distance;
   covariance_(7, 7) += square(kDriftWalk) * seconds;
 
-  if (is_back) {
-    // The IMU's yaw went on while it was silent, unless it started over.
-    const Eigen::Quaterniond believed = pose_.rotation * (attitude_.conjugate() * attitude_);
-    const double turned = yaw_of(level_before_ * step.attitude) - yaw_of(believed);
-    const bool goes_on = std::abs(std::remainder(turned, 2 * EIGEN_PI)) < kAnotherYaw;
-    level_ =
-        goes_on ? level_before_ : exponential({0, 0, yaw_of(believed) - yaw_of(step.attitude)});
-    covariance_.block<3, kErrors>(3, 0).setZero();
-    covariance_.block<kErrors, 3>(0, 3).setZero();
-    covariance_(3, 3) = covariance_(4, 4) = std::max(tilt_before_, square(kTilt));
-    covariance_(5, 5) = yaw_before_ + square(kDrift * silent_s_);
-    if (!goes_on) covariance_(5, 5) += square(0.05);
-  }
   attitude_ = step.attitude;
   pose_.translation += moved;
   pose_.rotation = (level_ * attitude_).normalized();
+}
+
+/// Takes up the level frame of an IMU that speaks again.
+void PoseFilter::join(const MotionStep& step) {
+  // Its yaw went on while it was silent, unless it started over, or was never heard before.
+  const Eigen::Quaterniond gone_on = exponential({0, 0, drift_ * silent_s_}) * level_before_;
+  const Eigen::Quaterniond believed =
+      pose_.rotation * step.begin_attitude.conjugate() * step.attitude;
+  const double turned =
+      std::remainder(yaw_of(gone_on * step.attitude) - yaw_of(believed), 2 * std::numbers::pi);
+  const bool goes_on = has_known_attitude_ && std::abs(turned) < kAnotherYaw;
+  const double yaw = goes_on ? yaw_before_ + square(kDrift * silent_s_)
+                             : covariance_(5, 5) + square(kAnotherYawError);
+  level_ = goes_on ? gone_on : exponential({0, 0, yaw_of(believed) - yaw_of(step.attitude)});
+  covariance_.block<3, kErrors>(3, 0).setZero();
+  covariance_.block<kErrors, 3>(0, 3).setZero();
+  covariance_(3, 3) = covariance_(4, 4) = std::max(tilt_before_, square(kTilt));
+  covariance_(5, 5) = yaw;
 }
 
 void PoseFilter::begin_update() {

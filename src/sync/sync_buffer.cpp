@@ -1,5 +1,7 @@
 #include "scree/sync/sync_buffer.hpp"
 
+#include <cmath>
+
 #include "scree/core/rotation.hpp"
 
 namespace scree {
@@ -7,6 +9,39 @@ namespace {
 
 double seconds(std::int64_t ns) {
   return static_cast<double>(ns) * 1e-9;
+}
+
+bool is_sound(const ImuSample& sample) {
+  constexpr double kUnit = 0.1;  // how far a quaternion's length may be from 1
+  return sample.has_orientation && std::abs(sample.orientation.norm() - 1) < kUnit &&
+         (!sample.has_rate || sample.rate.allFinite());
+}
+
+bool is_sound(const EncoderSample& sample) {
+  return std::isfinite(sample.distance);
+}
+
+template <class Sample>
+bool take(SampleHistory<Sample>& history, const Sample& sample) {
+  if (!is_sound(sample)) return false;
+  if (!history.empty() && sample.t_ns < history.newest().t_ns - SyncBuffer::kSetBackNs) {
+    history.clear();
+  }
+  return history.push(sample);
+}
+
+/// Whether nothing follows the samples before `next`, or only after silence: then the answer must
+/// not depend on whether that has come already.
+template <class Sample>
+bool ends_at(const SampleHistory<Sample>& history, std::size_t next) {
+  return next == history.size() ||
+         history[next].t_ns - history[next - 1].t_ns > SyncBuffer::kSilenceNs;
+}
+
+/// Where the device sends no rate: that between two of its orientations, sensor axes.
+Eigen::Vector3d mean_rate(const ImuSample& before, const ImuSample& after) {
+  return logarithm(before.orientation.conjugate() * after.orientation) /
+         seconds(after.t_ns - before.t_ns);
 }
 
 }  // namespace
@@ -26,12 +61,11 @@ bool SyncBuffer::put(const EncoderSample& sample) {
 }
 
 void SyncBuffer::gather() {
-  imu_ring_.consume_all([this](const ImuSample& sample) {
-    if (!sample.has_orientation || !imu_.push(sample)) ++late_;
-  });
-  wheel_ring_.consume_all([this](const EncoderSample& sample) {
-    if (!wheel_.push(sample)) ++late_;
-  });
+  std::uint64_t late = 0;
+  imu_ring_.consume_all([&](const ImuSample& sample) { late += take(imu_, sample) ? 0 : 1; });
+  wheel_ring_.consume_all(
+      [&](const EncoderSample& sample) { late += take(wheel_, sample) ? 0 : 1; });
+  late_.fetch_add(late, std::memory_order_relaxed);
 }
 
 bool SyncBuffer::covers(std::int64_t t_ns) const {
@@ -47,16 +81,19 @@ std::optional<Attitude> SyncBuffer::attitude_at(std::int64_t t_ns) const {
   const std::size_t next = imu_.count_until(t_ns);
   if (next == 0) return std::nullopt;
   const ImuSample& before = imu_[next - 1];
-  if (next == imu_.size()) {
+  if (ends_at(imu_, next)) {
     const double beyond = seconds(t_ns - before.t_ns);
     if (t_ns - before.t_ns > kSilenceNs) return std::nullopt;
-    return Attitude{before.orientation * exponential(before.rate * beyond), before.rate};
+    const Eigen::Vector3d rate =
+        before.has_rate || next < 2 ? before.rate : mean_rate(imu_[next - 2], before);
+    return Attitude{before.orientation * exponential(rate * beyond), rate};
   }
   const ImuSample& after = imu_[next];
-  if (after.t_ns - before.t_ns > kSilenceNs) return std::nullopt;
   const double share = seconds(t_ns - before.t_ns) / seconds(after.t_ns - before.t_ns);
-  return Attitude{before.orientation.slerp(share, after.orientation),
-                  before.rate + share * (after.rate - before.rate)};
+  const Eigen::Vector3d rate = before.has_rate && after.has_rate
+                                   ? before.rate + share * (after.rate - before.rate)
+                                   : mean_rate(before, after);
+  return Attitude{before.orientation.slerp(share, after.orientation), rate};
 }
 
 std::optional<WheelMotion> SyncBuffer::wheel_at(std::int64_t t_ns) const {
@@ -66,7 +103,7 @@ std::optional<WheelMotion> SyncBuffer::wheel_at(std::int64_t t_ns) const {
   const auto speed = [](const EncoderSample& a, const EncoderSample& b) {
     return (b.distance - a.distance) / seconds(b.t_ns - a.t_ns);
   };
-  if (next == wheel_.size()) {
+  if (ends_at(wheel_, next)) {
     if (t_ns - before.t_ns > kSilenceNs) return std::nullopt;
     // Over several samples, because a counter's steps are coarse.
     const std::size_t back = next >= 5 ? next - 5 : 0;
@@ -74,7 +111,6 @@ std::optional<WheelMotion> SyncBuffer::wheel_at(std::int64_t t_ns) const {
     return WheelMotion{before.distance + last * seconds(t_ns - before.t_ns), last};
   }
   const EncoderSample& after = wheel_[next];
-  if (after.t_ns - before.t_ns > kSilenceNs) return std::nullopt;
   const double between = speed(before, after);
   return WheelMotion{before.distance + between * seconds(t_ns - before.t_ns), between};
 }

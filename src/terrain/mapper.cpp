@@ -27,10 +27,16 @@ Mapper::Mapper(const Settings& settings)
       map_(map_settings(settings.map)) {}
 
 void Mapper::add(const Sweep& sweep, const SyncBuffer& sensors) {
-  const std::int64_t begin_ns = sweep.end_ns + sweep.time_ns[0];
+  const std::int64_t begin_ns = sweep.end_ns + (sweep.points.empty() ? 0 : sweep.time_ns[0]);
   const Pose before = filter_.pose();
   step_ = dead_reckoning_.advance(sensors, begin_ns, sweep.end_ns, track_);
   filter_.predict(step_);
+  if (step_.knows_attitude && !has_known_attitude_) {
+    // What was mapped before leans as the robot stood.
+    has_known_attitude_ = true;
+    surfels_.clear();
+    map_.clear();
+  }
   deskew(sweep, lidar_, track_, sweep_);
   outcome_ = {};
   if (registers_) correct();

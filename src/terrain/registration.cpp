@@ -79,15 +79,15 @@ Registration::Outcome Registration::align(const DeskewedSweep& sweep, SurfelMap&
   const Eigen::Vector3d predicted = filter.pose().translation;
   filter.begin_update();
   PoseEvidence evidence;
-  for (outcome.rounds = 1; outcome.rounds <= kRounds; ++outcome.rounds) {
+  for (int round = 1; round <= kRounds; ++round) {
     const Pose pose = filter.pose();
     const double uncertain =
-        outcome.rounds > 1 ? 0.02
-                           : std::sqrt(filter.covariance().diagonal().head<3>().maxCoeff() +
-                                       9 * filter.covariance().diagonal().segment<3>(3).maxCoeff());
-    evidence = PoseEvidence();
+        round > 1 ? 0.02
+                  : std::sqrt(filter.covariance().diagonal().head<3>().maxCoeff() +
+                              9 * filter.covariance().diagonal().segment<3>(3).maxCoeff());
+    PoseEvidence seen;
     double squares = 0, weights = 0;
-    outcome.key_points = 0;
+    int counted = 0;
     for (const Eigen::Vector3f& key_point : key_points_) {
       const Eigen::Vector3d turned = pose.rotation * key_point.cast<double>();
       const Eigen::Vector3d point = turned + pose.translation;
@@ -104,16 +104,20 @@ Registration::Outcome Registration::align(const DeskewedSweep& sweep, SurfelMap&
       const double weight = robust / (variance * kShared);
       Eigen::Matrix<double, 6, 1> jacobian;
       jacobian << normal, turned.cross(normal);
-      evidence.information += weight * jacobian * jacobian.transpose();
-      evidence.gradient += weight * distance * jacobian;
+      seen.information += weight * jacobian * jacobian.transpose();
+      seen.gradient += weight * distance * jacobian;
       squares += robust * distance * distance;
       weights += robust;
-      ++outcome.key_points;
+      ++counted;
     }
-    if (outcome.key_points < static_cast<int>(kLeastKeyPoints)) return outcome;
+    if (counted < static_cast<int>(kLeastKeyPoints)) break;
+    evidence = seen;
+    outcome.key_points = counted;
+    outcome.rounds = round;
     outcome.residual = std::sqrt(squares / weights);
     if (filter.update(evidence) < kConverged) break;
   }
+  if (outcome.rounds == 0) return outcome;
   filter.end_update(evidence);
   outcome.correction = (filter.pose().translation - predicted).norm();
   return outcome;

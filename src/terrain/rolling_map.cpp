@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstdlib>
 #include <utility>
 
 #include "scree/core/floor_to_cell.hpp"
@@ -142,7 +143,7 @@ void RollingMap::add(const DeskewedSweep& sweep, const Pose& pose, std::int64_t 
     const float share = 1 / static_cast<float>(voxel->hits);
     voxel->mean += share * (point - voxel->mean);
     voxel->reflectivity += share * (sweep.points.reflectivity[i] - voxel->reflectivity);
-    if (voxel->last_sweep != sweep_) ++voxel->sweeps;
+    if (voxel->last_sweep != sweep_ && voxel->sweeps < kMost) ++voxel->sweeps;
     voxel->last_sweep = sweep_;
     voxel->seen_ns = end_ns;
     voxel->passed = 0;
@@ -206,7 +207,8 @@ void RollingMap::forget(const Pose& pose) {
     const Voxel& voxel = voxels_[i];
     const bool is_far = (voxel.mean - here).squaredNorm() > reach * reach;
     const bool is_gone = voxel.passed >= kMostPassed;
-    const bool is_old = end_ns_ - voxel.seen_ns > kept_ns;
+    // From the future, too, when the clock was set back.
+    const bool is_old = std::abs(end_ns_ - voxel.seen_ns) > kept_ns;
     const bool is_noise = sweep_ - voxel.last_sweep == kJudged && !is_confirmed(voxel);
     if (is_far || is_gone || is_old || is_noise) remove(i);
   }

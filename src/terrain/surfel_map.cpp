@@ -33,8 +33,7 @@ SurfelMap::Place SurfelMap::place(const Eigen::Vector3f& point) const {
   const auto wrap = [](std::int32_t value, int size) {
     return static_cast<std::size_t>(value & (size - 1));
   };
-  return {static_cast<std::int16_t>(x), static_cast<std::int16_t>(y), static_cast<std::int16_t>(z),
-          (wrap(z, kHigh) * kWide + wrap(y, kWide)) * kWide + wrap(x, kWide)};
+  return {x, y, z, (wrap(z, kHigh) * kWide + wrap(y, kWide)) * kWide + wrap(x, kWide)};
 }
 
 Eigen::Vector3f SurfelMap::middle(const Cell& cell) const {

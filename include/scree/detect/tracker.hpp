@@ -28,7 +28,8 @@ public:
               FixedVector<Obstacle>& obstacles);
   void clear() { tracks_.clear(); }
 
-  /// Candidates that no track had room for, and obstacles that did not fit into a list.
+  /// Candidates that no track had room for, pairs of track and candidate beyond those compared, and
+  /// obstacles that did not fit into a list.
   std::uint64_t dropped() const { return dropped_; }
 
 private:

@@ -9,14 +9,17 @@
 namespace scree {
 
 /// How `base` moved from one instant to another, by IMU and encoder alone. The `level` frame is the
-/// IMU's own: gravity-aligned, with a yaw that drifts.
+/// IMU's own: gravity-aligned, with a yaw that drifts. It is the one at the end: what was guessed
+/// while the IMU was silent is turned to join what it says when it speaks again.
 struct MotionStep {
   std::int64_t begin_ns = 0, end_ns = 0;
+  Eigen::Quaterniond begin_attitude = Eigen::Quaterniond::Identity();
   Eigen::Quaterniond attitude = Eigen::Quaterniond::Identity();  ///< of `base` in `level`, at end
   Eigen::Vector3d moved = Eigen::Vector3d::Zero();               ///< in `level`, metres
   double distance = 0;  ///< that the wheel says, or that was assumed; backwards below zero
   double turned = 0;    ///< angle between the attitudes, rad
   bool knows_attitude = false, knows_distance = false;  ///< measured up to the end
+  /// Not below zero, and little more than DeadReckoning::kLongestWaitNs.
   double seconds() const { return static_cast<double>(end_ns - begin_ns) * 1e-9; }
 };
 
@@ -49,9 +52,14 @@ private:
 
 /// Follows the motion of `base` from instant to instant: attitude from the IMU, way from the
 /// encoder along the x axis of `base` (no slip to the sides). Where a sensor is silent the last
-/// angular rate or speed is carried on, or what steer() says.
+/// angular rate or speed is carried on, or what is assumed instead.
 class DeadReckoning {
 public:
+  /// After a longer wait for the next end, and after one that is not later than the last, the clock
+  /// was set or the lidar was away: the motion goes on at `begin_ns`, with the way and the turn
+  /// that the sensors have made meanwhile, and with none where they are silent.
+  static constexpr std::int64_t kLongestWaitNs = 10'000'000'000;
+
   /// @param imu_mount rotation imu -> base
   explicit DeadReckoning(const Eigen::Quaterniond& imu_mount) : imu_mount_(imu_mount) {}
 
@@ -73,9 +81,10 @@ private:
     bool knows_attitude = false, knows_distance = false;
   };
   void go_on(const SyncBuffer& sensors, std::int64_t t_ns);
+  void turn(const Eigen::Quaterniond& rotation);
 
   Eigen::Quaterniond imu_mount_;
-  State state_;
+  State state_, begin_;  // now, and at the begin of the step under way
   std::int64_t now_ns_ = 0;
   double wheel_ = 0;     // its distance at now_ns_, while that is known
   double distance_ = 0;  // of the step under way

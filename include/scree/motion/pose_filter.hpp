@@ -52,6 +52,7 @@ public:
   double yaw_drift() const { return drift_; }
 
 private:
+  void join(const MotionStep& step);
   void apply(const Errors& error);
 
   Pose pose_;
@@ -60,7 +61,7 @@ private:
   double scale_ = 0, drift_ = 0;
   Covariance covariance_ = Covariance::Zero();
   // While the IMU is silent.
-  bool knew_attitude_ = false, started_ = false;
+  bool knew_attitude_ = false, has_known_attitude_ = false, started_ = false;
   Eigen::Quaterniond level_before_ = Eigen::Quaterniond::Identity();
   double tilt_before_ = 0, yaw_before_ = 0;  // variances
   double silent_s_ = 0;

@@ -32,6 +32,9 @@ public:
   /// A sensor's two samples around an instant may lie this far apart; and the last one may lie this
   /// long ago. Beyond it the sensor was silent.
   static constexpr std::int64_t kSilenceNs = 100'000'000;
+  /// A sample this much older than the one before says that the clock was set back: what came
+  /// before is forgotten.
+  static constexpr std::int64_t kSetBackNs = 1'000'000'000;
 
   SyncBuffer();
 
@@ -41,7 +44,8 @@ public:
 
   // The consumer.
 
-  /// Takes over what the producers have put. Samples not newer than those before are refused.
+  /// Takes over what the producers have put. Refused: samples not newer than those before, and
+  /// those without an orientation or with values that are no numbers.
   void gather();
   /// Whether waiting longer cannot give the motion until t_ns any better: each sensor has a sample
   /// from then or later, or has been silent for kSilenceNs before it.
@@ -55,9 +59,9 @@ public:
 
   const SampleHistory<ImuSample>& imu() const { return imu_; }
   const SampleHistory<EncoderSample>& wheel() const { return wheel_; }
-  /// Samples that found no room, and samples out of order. Any thread.
+  /// Samples that found no room, and samples that gather() refused. Any thread.
   std::uint64_t dropped() const { return dropped_.load(std::memory_order_relaxed); }
-  std::uint64_t late() const { return late_; }
+  std::uint64_t late() const { return late_.load(std::memory_order_relaxed); }
 
 private:
   static constexpr std::size_t kRing = 4096;  // over 4 s at 1 kHz
@@ -70,8 +74,7 @@ private:
   Ring<EncoderSample> wheel_ring_;
   SampleHistory<ImuSample> imu_{kHistory};
   SampleHistory<EncoderSample> wheel_{kHistory};
-  std::atomic<std::uint64_t> dropped_{0};
-  std::uint64_t late_ = 0;
+  std::atomic<std::uint64_t> dropped_{0}, late_{0};
 };
 
 }  // namespace scree

@@ -19,7 +19,8 @@ struct Surfel {
 
 /// The ground around the robot as planes in cubic cells, for registration. Bounded: cells lie in a
 /// box that repeats endlessly in all directions, and a cell is taken over by the place that was
-/// seen last. So what the robot leaves behind is forgotten.
+/// seen last. So what the robot leaves behind is forgotten. Points are floats in `odom`: good to 1 mm
+/// as far as 8 km from its origin, to 1 cm as far as 80 km.
 class SurfelMap {
 public:
   /// @param cell edge, metres
@@ -38,7 +39,7 @@ private:
   static constexpr int kWide = 128, kHigh = 64;
 
   struct Cell {
-    std::int16_t x = 0, y = 0, z = 0;
+    std::int32_t x = 0, y = 0, z = 0;
     bool is_used = false;
     bool is_fresh = false;  // the surfel is that of the sums
     bool is_plane = false;
@@ -48,7 +49,7 @@ private:
     Surfel surfel;
   };
   struct Place {
-    std::int16_t x, y, z;
+    std::int32_t x, y, z;
     std::size_t index;
   };
   Place place(const Eigen::Vector3f& point) const;

@@ -1,0 +1,282 @@
+#include "scree/detect/tracker.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <set>
+#include <vector>
+
+#include "allocation_counter.hpp"
+
+namespace scree {
+namespace {
+
+constexpr std::int64_t kStart = 1'598'612'523'000'000'000, kList = 100'000'000;
+
+Obstacle at(double x, double y, float confidence = 0.9F) {
+  Obstacle obstacle;
+  obstacle.center = {x, y, 0.2};
+  obstacle.extent = {0.6, 0.4, 0.4};
+  obstacle.yaw = 0.3;
+  obstacle.height = 0.4;
+  obstacle.confidence = confidence;
+  obstacle.points = 50;
+  return obstacle;
+}
+
+Obstacle hole_at(double x, double y, float confidence = 0.9F) {
+  Obstacle obstacle = at(x, y, confidence);
+  obstacle.kind = ObstacleKind::negative;
+  obstacle.height = -0.4;
+  obstacle.center.z() = -0.2;
+  return obstacle;
+}
+
+class TrackerTest : public testing::Test {
+protected:
+  static constexpr std::size_t kMost = 16;
+
+  TrackingSettings settings_;
+  Tracker tracker_{settings_, kMost};
+  FixedVector<Obstacle> list_{kMost};
+  Sight sight_ = Sight::occupied;
+  std::int64_t now_ns_ = kStart;
+
+  const FixedVector<Obstacle>& update(const std::vector<Obstacle>& found, int times = 1) {
+    for (int i = 0; i < times; ++i) {
+      tracker_.update(
+          now_ns_ += kList, found, [this](const Eigen::Vector3d&) { return sight_; }, list_);
+    }
+    return list_;
+  }
+  /// Lists until the list is as long as asked for; 100 at most.
+  int updates_until(std::size_t size, const std::vector<Obstacle>& found) {
+    for (int i = 1; i < 100; ++i) {
+      if (update(found).size() == size) return i;
+    }
+    return 100;
+  }
+};
+
+TEST_F(TrackerTest, AnObstacleAppearsOnceItWasSeenAgainAndStaysAsItWasFoundLast) {
+  EXPECT_EQ(update({at(3, 1)}).size(), 0U) << "seen once";
+  ASSERT_EQ(update({at(3, 1)}).size(), 1U);
+  const std::int64_t id = list_[0].id;
+  EXPECT_GT(id, 0);
+  for (int i = 0; i < 50; ++i) {
+    Obstacle moved = at(3 + 0.002 * i, 1);
+    moved.points = static_cast<std::uint32_t>(i);
+    ASSERT_EQ(update({moved}).size(), 1U);
+    EXPECT_EQ(list_[0].id, id);
+    EXPECT_EQ(list_[0].center, moved.center);
+    EXPECT_EQ(list_[0].extent, moved.extent);
+    EXPECT_EQ(list_[0].height, moved.height);
+    EXPECT_EQ(list_[0].points, moved.points);
+    EXPECT_NEAR(list_[0].confidence, 0.9, 1e-3);
+  }
+}
+
+TEST_F(TrackerTest, WhatIsHardlyBelievedNeverAppears) {
+  EXPECT_EQ(updates_until(1, {at(3, 1, 0.3F)}), 100);
+}
+
+TEST_F(TrackerTest, IdsStayWithTheirObstaclesWhateverTheOrder) {
+  std::vector<Obstacle> found;
+  for (int i = 0; i < 8; ++i) found.push_back(i % 2 == 0 ? at(1.5 * i, 0) : hole_at(1.5 * i, 0));
+  update(found, 3);
+  ASSERT_EQ(list_.size(), 8U);
+  std::vector<std::int64_t> ids(8);
+  std::set<std::int64_t> different;
+  for (const Obstacle& obstacle : list_) {
+    const auto place = static_cast<std::size_t>(std::lround(obstacle.center.x() / 1.5));
+    ids[place] = obstacle.id;
+    different.insert(obstacle.id);
+    EXPECT_EQ(obstacle.kind, found[place].kind);
+  }
+  EXPECT_EQ(different.size(), 8U);
+  std::mt19937 random(41);
+  std::normal_distribution<double> noise(0, 0.04);
+  for (int i = 0; i < 100; ++i) {
+    std::vector<Obstacle> shuffled = found;
+    std::shuffle(shuffled.begin(), shuffled.end(), random);
+    for (Obstacle& obstacle : shuffled) {
+      obstacle.center += Eigen::Vector3d(noise(random), noise(random), 0);
+    }
+    ASSERT_EQ(update(shuffled).size(), 8U);
+    for (const Obstacle& obstacle : list_) {
+      ASSERT_EQ(obstacle.id, ids[static_cast<std::size_t>(std::lround(obstacle.center.x() / 1.5))]);
+    }
+  }
+}
+
+TEST_F(TrackerTest, GoesSoonWhereItsPlaceIsSeenEmptyAndLaterWhereItIsUnseen) {
+  std::array<int, 3> lists{};
+  for (const Sight sight : {Sight::empty, Sight::occupied, Sight::unseen}) {
+    tracker_.clear();
+    update({at(3, 1)}, 10);
+    sight_ = sight;
+    lists[static_cast<std::size_t>(sight)] = updates_until(0, {});
+  }
+  const auto after = [&](Sight sight) { return lists[static_cast<std::size_t>(sight)]; };
+  EXPECT_LE(after(Sight::empty), 2);
+  EXPECT_GE(after(Sight::occupied), after(Sight::empty));
+  EXPECT_LE(after(Sight::occupied), 5);
+  const int remembered = static_cast<int>(settings_.remember * 1e9 / kList);
+  EXPECT_GE(after(Sight::unseen), remembered);
+  EXPECT_LE(after(Sight::unseen), remembered + 2);
+}
+
+TEST_F(TrackerTest, ComesBackWithItsIdWhenItWasOnlyUnseenForAWhile) {
+  update({at(3, 1)}, 5);
+  const std::int64_t id = list_[0].id;
+  sight_ = Sight::unseen;
+  update({}, 5);
+  ASSERT_EQ(list_.size(), 1U) << "still there";
+  EXPECT_EQ(list_[0].id, id);
+  ASSERT_EQ(update({at(3.05, 1)}).size(), 1U);
+  EXPECT_EQ(list_[0].id, id);
+}
+
+// A confidence that wavers about a threshold does not make the obstacle come and go.
+TEST_F(TrackerTest, DoesNotFlicker) {
+  std::mt19937 random(42);
+  std::uniform_real_distribution<float> wavering(0.25F, 0.75F);
+  update({at(3, 1)}, 5);
+  int changes = 0, raw_changes = 0;
+  bool was_listed = true, was_sure = true;
+  std::set<std::int64_t> ids;
+  for (int i = 0; i < 300; ++i) {
+    const float confidence = wavering(random);
+    const bool is_listed = update({at(3, 1, confidence)}).size() == 1;
+    const bool is_sure = confidence >= static_cast<float>(settings_.appear);
+    changes += is_listed != was_listed ? 1 : 0;
+    raw_changes += is_sure != was_sure ? 1 : 0;
+    was_listed = is_listed;
+    was_sure = is_sure;
+    if (is_listed) ids.insert(list_[0].id);
+  }
+  EXPECT_GT(raw_changes, 100);
+  EXPECT_LT(changes, raw_changes / 5);
+  EXPECT_EQ(ids.size(), 1U);
+}
+
+TEST_F(TrackerTest, AMissedListChangesNothing) {
+  update({at(3, 1)}, 10);
+  const std::int64_t id = list_[0].id;
+  for (int i = 0; i < 50; ++i) {
+    ASSERT_EQ(update({}).size(), 1U) << i;
+    EXPECT_EQ(list_[0].id, id);
+    ASSERT_EQ(update({at(3, 1)}, 3).size(), 1U) << i;
+  }
+}
+
+TEST_F(TrackerTest, TheKindIsThatOfTheEvidenceInAll) {
+  // Something that stands up, which the network takes for a hole now and then.
+  Obstacle doubtful = at(3, 1, 0.6F);
+  doubtful.kind = ObstacleKind::negative;
+  update({at(3, 1)}, 5);
+  const std::int64_t id = list_[0].id;
+  for (int i = 0; i < 20; ++i) {
+    ASSERT_EQ(update({i % 4 == 0 ? doubtful : at(3, 1)}).size(), 1U);
+    EXPECT_EQ(list_[0].kind, ObstacleKind::positive) << i;
+    EXPECT_EQ(list_[0].id, id);
+  }
+  doubtful.confidence = 0.9F;
+  update({doubtful}, 10);
+  ASSERT_EQ(list_.size(), 1U);
+  EXPECT_EQ(list_[0].kind, ObstacleKind::negative);
+  EXPECT_EQ(list_[0].id, id);
+}
+
+TEST_F(TrackerTest, AHoleBesideAMoundIsAnother) {
+  update({at(3, 1), hole_at(3.1, 1)}, 4);
+  ASSERT_EQ(list_.size(), 2U);
+  EXPECT_NE(list_[0].id, list_[1].id);
+  EXPECT_NE(list_[0].kind, list_[1].kind);
+}
+
+TEST_F(TrackerTest, PartsThatBecomeOneAndAPartThatSplitsOffKeepOneId) {
+  update({at(3, 1), at(3.5, 1.15)}, 5);
+  ASSERT_EQ(list_.size(), 2U);
+  const std::set<std::int64_t> ids{list_[0].id, list_[1].id};
+  Obstacle whole = at(3.25, 1.08);
+  whole.extent = {1.1, 0.4, 0.4};
+  EXPECT_LT(updates_until(1, {whole}), 6) << "no ghost of the other part stays";
+  ASSERT_EQ(list_.size(), 1U);
+  const std::int64_t id = list_[0].id;
+  EXPECT_TRUE(ids.count(id));
+  EXPECT_EQ(list_[0].extent, whole.extent);
+
+  update({at(3, 1), at(3.5, 1.15)}, 5);
+  ASSERT_EQ(list_.size(), 2U);
+  EXPECT_NE(list_[0].id, list_[1].id);
+  EXPECT_TRUE(list_[0].id == id || list_[1].id == id);
+}
+
+TEST_F(TrackerTest, LongThingsAreMatchedByTheirBoxesNotByTheirCentres) {
+  // A log of 4 m of which now this, now that part is seen.
+  Obstacle log = at(3, 0);
+  log.yaw = 1.2;
+  log.extent = {4, 0.3, 0.3};
+  update({log}, 4);
+  ASSERT_EQ(list_.size(), 1U);
+  const std::int64_t id = list_[0].id;
+  log.center += 1.2 * Eigen::Vector3d(std::cos(1.2), std::sin(1.2), 0);
+  log.extent.x() = 1.6;
+  ASSERT_EQ(update({log}).size(), 1U);
+  EXPECT_EQ(list_[0].id, id);
+  // Beside the log's middle, and out of its box.
+  Obstacle stone = log;
+  stone.center += 0.9 * Eigen::Vector3d(-std::sin(1.2), std::cos(1.2), 0);
+  stone.extent = {0.3, 0.3, 0.3};
+  update({log, stone}, 4);
+  EXPECT_EQ(list_.size(), 2U);
+}
+
+TEST_F(TrackerTest, DropsAndCountsWhatFindsNoRoom) {
+  std::vector<Obstacle> many;
+  for (int i = 0; i < 40; ++i) many.push_back(at(1.5 * i, 0));
+  update(many, 3);
+  EXPECT_EQ(list_.size(), kMost);
+  EXPECT_EQ(tracker_.dropped(), 3 * (40 - kMost));
+  // All of one heap: more pairs than are compared.
+  tracker_.clear();
+  const std::uint64_t before = tracker_.dropped();
+  update(std::vector<Obstacle>(kMost, at(3, 1)), 20);
+  EXPECT_LE(list_.size(), kMost);
+  EXPECT_GE(tracker_.dropped(), before);
+
+  FixedVector<Obstacle> small(2);
+  tracker_.clear();
+  many.resize(5);
+  for (int i = 0; i < 3; ++i) {
+    tracker_.update(
+        now_ns_ += kList, many, [](const Eigen::Vector3d&) { return Sight::occupied; }, small);
+  }
+  EXPECT_EQ(small.size(), 2U);
+  EXPECT_GT(tracker_.dropped(), before);
+}
+
+// Were the time of the last finding ahead for hours, what is unseen would stay so long.
+TEST_F(TrackerTest, GoesOnWhenTheClockIsSet) {
+  for (const std::int64_t shift : {-36'000 * kList, 36'000 * kList}) {
+    tracker_.clear();
+    update({at(3, 1), at(9, 1)}, 5);
+    const std::int64_t id = list_[0].id;
+    now_ns_ += shift;
+    sight_ = Sight::unseen;
+    update({at(3, 1)}, 20);
+    ASSERT_EQ(list_.size(), 1U);
+    EXPECT_EQ(list_[0].id, id);
+  }
+}
+
+TEST_F(TrackerTest, AllocatesNothing) {
+  const std::vector<Obstacle> found(kMost, at(3, 1));
+  const std::size_t before = test::allocations();
+  update(found, 20);
+  EXPECT_EQ(test::allocations(), before);
+}
+
+}  // namespace
+}  // namespace scree

@@ -1,0 +1,59 @@
+#include "scree/terrain/free_space.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <random>
+#include <tuple>
+
+namespace scree {
+namespace {
+
+using Cell = std::tuple<int, int, int>;
+
+Cell cell_of(const Eigen::Vector3f& place) {
+  const auto cell = [](float value) {
+    return static_cast<int>(std::floor(static_cast<double>(value) / FreeSpace::kCell));
+  };
+  return {cell(place.x()), cell(place.y()), cell(place.z())};
+}
+
+// Within half the box a plain map of cells gives the same answers, wherever the robot is.
+TEST(FreeSpace, RemembersWhatWasPassedLast) {
+  for (const float far : {0.0F, -3.1F, 500.0F, 8191.9F, -8192.1F, 50'000.0F}) {
+    FreeSpace space;
+    std::map<Cell, std::uint32_t> reference;
+    std::mt19937 random(17);
+    std::uniform_real_distribution<float> wide(-15, 15), high(-3, 3);
+    const auto somewhere = [&] {
+      return Eigen::Vector3f(far + wide(random), -far + wide(random), high(random));
+    };
+    for (std::uint32_t sweep = 1; sweep <= 20'000; ++sweep) {
+      const Eigen::Vector3f place = somewhere();
+      space.pass(place, sweep);
+      reference[cell_of(place)] = sweep;
+    }
+    for (int i = 0; i < 20'000; ++i) {
+      const Eigen::Vector3f place = somewhere();
+      const auto found = reference.find(cell_of(place));
+      const std::uint32_t expected = found == reference.end() ? 0 : found->second;
+      ASSERT_EQ(space.last_passed(place), expected) << place.transpose();
+    }
+    space.clear();
+    EXPECT_EQ(space.last_passed(somewhere()), 0U);
+  }
+}
+
+TEST(FreeSpace, APlaceTakesOverTheMemoryOfOneFarAway) {
+  FreeSpace space;
+  const Eigen::Vector3f here(1, 1, 0.1F), far_away = here + Eigen::Vector3f(32, 0, 0);
+  space.pass(here, 5);
+  EXPECT_EQ(space.last_passed(far_away), 0U);
+  space.pass(far_away, 6);
+  EXPECT_EQ(space.last_passed(far_away), 6U);
+  EXPECT_EQ(space.last_passed(here), 0U);
+}
+
+}  // namespace
+}  // namespace scree

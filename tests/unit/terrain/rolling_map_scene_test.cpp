@@ -1,0 +1,120 @@
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "scree/terrain/rolling_map.hpp"
+
+namespace scree {
+namespace {
+
+/// A lidar 1 m above level ground looks ahead; a box stands on the ground there, or not.
+class Scene {
+public:
+  bool has_box = true;
+
+  const RollingMap& map() const { return map_; }
+
+  void look(int sweeps) {
+    std::normal_distribution<double> noise(0, 0.005);
+    std::uniform_real_distribution<double> shake(-0.0025, 0.0025);
+    for (int i = 0; i < sweeps; ++i) {
+      sweep_.points.clear();
+      sweep_.origins.clear();
+      const double up_by = shake(random_), side_by = shake(random_);
+      for (int row = 0; row < 90; ++row) {
+        for (int column = 0; column < 120; ++column) {
+          const double up = up_by - 0.008 * row - 0.09, side = side_by + 0.008 * (column - 60);
+          const Eigen::Vector3d along(std::cos(up) * std::cos(side), std::cos(up) * std::sin(side),
+                                      std::sin(up));
+          const double range = cast(along) + noise(random_);
+          const Eigen::Vector3f hit = (kLidar + range * along).cast<float>();
+          sweep_.points.push_back(hit.x(), hit.y(), hit.z(), 20);
+          sweep_.origins.push_back(kLidar.cast<float>());
+        }
+      }
+      map_.add(sweep_, Pose(), now_ns_ += 100'000'000);
+    }
+  }
+  struct Counts {
+    int box = 0, ground = 0;
+  };
+  Counts counts() const {
+    Counts counts;
+    for (std::size_t i = 0; i < map_.cloud().size(); ++i) {
+      const float x = map_.cloud().x[i], y = map_.cloud().y[i], z = map_.cloud().z[i];
+      const bool is_box = z > 0.08F && x > 2.8F && x < 3.6F && std::abs(y) < 0.6F;
+      (is_box ? counts.box : counts.ground) += 1;
+    }
+    return counts;
+  }
+
+private:
+  // The box: its face 3 m ahead, 1 m wide, 0.5 m high, 0.5 m deep.
+  static double cast(const Eigen::Vector3d& along, bool has_box) {
+    double range = -kLidar.z() / along.z();
+    if (!has_box) return range;
+    const auto hits = [&](double way) {
+      const Eigen::Vector3d at = kLidar + way * along;
+      return std::abs(at.y()) < 0.5 && at.z() < 0.5 + 1e-9 && at.x() > 3 - 1e-9 && at.x() < 3.5;
+    };
+    for (const double way : {3 / along.x(), (0.5 - kLidar.z()) / along.z()}) {
+      if (hits(way)) range = std::min(range, way);
+    }
+    return range;
+  }
+  double cast(const Eigen::Vector3d& along) const { return cast(along, has_box); }
+
+  inline static const Eigen::Vector3d kLidar{0, 0, 1};
+  RollingMap map_{RollingMapSettings{.max_voxels = 1 << 17}};
+  DeskewedSweep sweep_{1 << 14};
+  std::mt19937 random_{31};
+  std::int64_t now_ns_ = 1'598'612'523'000'000'000;
+};
+
+TEST(RollingMapScene, WhatMovedAwayIsForgottenAndWhatStandsStays) {
+  Scene scene;
+  scene.look(20);
+  const Scene::Counts with = scene.counts();
+  EXPECT_GT(with.box, 150);
+  EXPECT_GT(with.ground, 3000);
+  EXPECT_EQ(scene.map().sight({3, 0, 0.3}), Sight::occupied);
+
+  scene.look(150);
+  const Scene::Counts later = scene.counts();
+  EXPECT_GT(later.box, 0.97 * with.box);
+  EXPECT_GT(later.ground, 0.97 * with.ground);
+
+  scene.has_box = false;
+  scene.look(60);
+  const Scene::Counts without = scene.counts();
+  EXPECT_LT(without.box, 0.05 * with.box);
+  EXPECT_GT(without.ground, with.ground) << "also where the box stood, and behind it";
+  EXPECT_EQ(scene.map().sight({3, 0, 0.3}), Sight::empty);
+}
+
+TEST(RollingMapScene, TellsUnseenFromEmpty) {
+  Scene scene;
+  scene.look(20);
+  EXPECT_EQ(scene.map().sight({3, 0, 0.25}), Sight::occupied);
+  EXPECT_EQ(scene.map().sight({2, 0, 0}), Sight::occupied) << "the ground";
+  EXPECT_EQ(scene.map().sight({1.5, 0, 0.6}), Sight::empty);
+  EXPECT_EQ(scene.map().sight({4.3, 0, 0.15}), Sight::unseen) << "in the box's shadow";
+  EXPECT_EQ(scene.map().sight({3, 0, 2}), Sight::unseen) << "above all beams";
+  EXPECT_EQ(scene.map().sight({-3, 0, 0.5}), Sight::unseen) << "behind";
+  EXPECT_EQ(scene.map().sight({2, 0, -0.6}), Sight::unseen) << "below ground";
+  EXPECT_EQ(scene.map().sight({300, 0, 0}), Sight::unseen);
+}
+
+TEST(RollingMapScene, IsTheSameOnEveryRun) {
+  Scene a, b;
+  a.look(5);
+  b.look(5);
+  ASSERT_EQ(a.map().cloud().size(), b.map().cloud().size());
+  for (std::size_t i = 0; i < a.map().cloud().size(); ++i) {
+    ASSERT_EQ(a.map().cloud().x[i], b.map().cloud().x[i]);
+    ASSERT_EQ(a.map().cloud().z[i], b.map().cloud().z[i]);
+  }
+}
+
+}  // namespace
+}  // namespace scree

@@ -1,0 +1,262 @@
+#include "scree/terrain/rolling_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <random>
+#include <tuple>
+#include <vector>
+
+#include "allocation_counter.hpp"
+#include "scree/core/rotation.hpp"
+
+namespace scree {
+namespace {
+
+constexpr std::int64_t kStart = 1'598'612'523'000'000'000, kSweep = 100'000'000;
+constexpr double kVoxel = 0.05;
+
+using Cell = std::tuple<int, int, int>;
+
+Cell cell_of(const Eigen::Vector3d& place) {
+  const auto cell = [](double value) { return static_cast<int>(std::floor(value / kVoxel)); };
+  return {cell(place.x()), cell(place.y()), cell(place.z())};
+}
+
+/// A map and its clock.
+class RollingMapTest : public testing::Test {
+protected:
+  RollingMapSettings settings_{.voxel = kVoxel, .reach = 12, .max_voxels = 1 << 16};
+  RollingMap map_{settings_};
+  DeskewedSweep sweep_{1 << 15};
+  Pose pose_;
+  std::int64_t now_ns_ = kStart;
+
+  /// @param point in `odom`
+  void see(const Eigen::Vector3d& point) {
+    const Eigen::Vector3f seen =
+        (pose_.rotation.conjugate() * (point - pose_.translation)).cast<float>();
+    sweep_.points.push_back(seen.x(), seen.y(), seen.z(), 20);
+    sweep_.origins.push_back(Eigen::Vector3f(0, 0, 1));
+  }
+  void end_sweep() {
+    map_.add(sweep_, pose_, now_ns_ += kSweep);
+    sweep_.points.clear();
+    sweep_.origins.clear();
+  }
+  void wait(int sweeps) {
+    for (int i = 0; i < sweeps; ++i) end_sweep();
+  }
+  Eigen::Vector3d confirmed(std::size_t i) const {
+    const PointCloud& cloud = map_.cloud();
+    return map_.origin() + Eigen::Vector3d(cloud.x[i], cloud.y[i], cloud.z[i]);
+  }
+  bool has_near(const Eigen::Vector3d& place, double distance = 0.03) const {
+    for (std::size_t i = 0; i < map_.cloud().size(); ++i) {
+      if ((confirmed(i) - place).norm() < distance) return true;
+    }
+    return false;
+  }
+};
+
+TEST_F(RollingMapTest, KeepsTheMeanOfEachVoxelsPoints) {
+  std::mt19937 random(21);
+  std::uniform_real_distribution<double> jitter(-0.02, 0.02);
+  pose_ = {{1, -2, 0.3}, from_roll_pitch_yaw(0.05, -0.1, 2)};
+  std::map<Cell, std::vector<Eigen::Vector3d>> reference;
+  for (int sweep = 0; sweep < 9; ++sweep) {
+    for (int x = -40; x < 40; ++x) {
+      for (int y = -40; y < 40; y += 2) {
+        for (int again = 0; again < 1 + (x & 3); ++again) {
+          const Eigen::Vector3d point(kVoxel * (x + 0.5) + jitter(random),
+                                      kVoxel * (y + 0.5) + jitter(random), 0.025 + jitter(random));
+          see(point);
+          reference[cell_of(point)].push_back(point);
+        }
+      }
+    }
+    end_sweep();
+  }
+  ASSERT_EQ(map_.voxels(), reference.size());
+  ASSERT_EQ(map_.cloud().size(), reference.size());
+  EXPECT_EQ(map_.dropped(), 0U);
+  for (std::size_t i = 0; i < map_.cloud().size(); ++i) {
+    const auto& points = reference.at(cell_of(confirmed(i)));
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (const Eigen::Vector3d& point : points) mean += point / static_cast<double>(points.size());
+    ASSERT_LT((confirmed(i) - mean).norm(), 1e-5);
+    ASSERT_EQ(map_.cloud().reflectivity[i], 20);
+  }
+}
+
+TEST_F(RollingMapTest, APointThatNoOtherSweepConfirmsStaysOutAndGoes) {
+  const Eigen::Vector3d noise(3, 1, 1.5), twice(3, -1, 1.5), beside(3, 4, 1.5);
+  see(noise);
+  see(twice);
+  see(beside);
+  end_sweep();
+  EXPECT_EQ(map_.cloud().size(), 0U);
+  EXPECT_EQ(map_.voxels(), 3U);
+  wait(10);
+  see(twice);
+  see(beside + Eigen::Vector3d(kVoxel, 0, 0));
+  end_sweep();
+  EXPECT_FALSE(has_near(noise));
+  EXPECT_TRUE(has_near(twice));
+  EXPECT_TRUE(has_near(beside));
+  EXPECT_EQ(map_.voxels(), 4U);
+  wait(60);
+  EXPECT_EQ(map_.voxels(), 3U) << "the noise";
+  EXPECT_TRUE(has_near(twice));
+  EXPECT_TRUE(has_near(beside));
+}
+
+TEST_F(RollingMapTest, PointsOfOneSweepDoNotConfirmOneAnother) {
+  for (int i = 0; i < 10; ++i) see({3 + kVoxel * i, 0, 1.5});
+  end_sweep();
+  EXPECT_EQ(map_.cloud().size(), 0U);
+}
+
+TEST_F(RollingMapTest, ForgetsWhatIsFarOrOld) {
+  const Eigen::Vector3d left(0, 0, 0), right(11, 0, 0);
+  for (int i = 0; i < 2; ++i) {
+    see(left);
+    see(right);
+    end_sweep();
+  }
+  pose_.translation.x() = 11.5;
+  end_sweep();
+  EXPECT_TRUE(has_near(left));
+  pose_.translation.x() = 12.5;
+  end_sweep();
+  EXPECT_FALSE(has_near(left));
+  EXPECT_TRUE(has_near(right));
+  EXPECT_EQ(map_.voxels(), 1U);
+  now_ns_ += 59'000'000'000;
+  end_sweep();
+  EXPECT_TRUE(has_near(right));
+  now_ns_ += 2'000'000'000;
+  end_sweep();
+  EXPECT_EQ(map_.voxels(), 0U);
+
+  see({400, 0, 0});
+  end_sweep();
+  EXPECT_EQ(map_.voxels(), 0U) << "too far to be taken";
+}
+
+TEST_F(RollingMapTest, BuildsUpAnewWhenTheClockIsSet) {
+  const Eigen::Vector3d there(3, 0, 0), gone(3, 3, 0);
+  constexpr std::int64_t kHour = 3'600'000'000'000;
+  for (const std::int64_t shift : {-400'000 * kHour, 800'000 * kHour, -kHour}) {
+    for (int i = 0; i < 3; ++i) {
+      see(there);
+      see(gone);
+      end_sweep();
+    }
+    now_ns_ += shift;
+    for (int i = 0; i < 3; ++i) {
+      see(there);
+      end_sweep();
+    }
+    EXPECT_TRUE(has_near(there));
+    EXPECT_FALSE(has_near(gone));
+  }
+}
+
+// After hours of standing still, too: counts do not wrap.
+TEST_F(RollingMapTest, StaysConfirmedHoweverOftenItIsSeen) {
+  map_ = RollingMap({.voxel = kVoxel, .reach = 12, .max_voxels = 16});
+  for (int i = 0; i < 140'000; ++i) {
+    see({3, 0, 0});
+    end_sweep();
+    ASSERT_EQ(map_.cloud().size(), i > 0 ? 1U : 0U) << i;
+  }
+}
+
+TEST_F(RollingMapTest, DropsAndCountsWhatFindsNoRoomAndRecovers) {
+  map_ = RollingMap({.voxel = kVoxel, .reach = 7, .max_voxels = 500});
+  const auto look = [&](double x) {
+    for (int i = 0; i < 2; ++i) {
+      for (int k = 0; k < 2000; ++k)
+        see({x + 0.1 * (k % 50) + 0.024, 0.1 * (k / 50) - 1.976, 0.024});
+      end_sweep();
+    }
+  };
+  look(0);
+  EXPECT_EQ(map_.voxels(), 500U);
+  EXPECT_EQ(map_.cloud().size(), 500U);
+  EXPECT_EQ(map_.dropped(), 3000U);
+  for (std::size_t i = 0; i < 500; ++i) EXPECT_NEAR(confirmed(i).z(), 0.024, 1e-6);
+  pose_.translation.x() = 20;
+  end_sweep();
+  EXPECT_EQ(map_.voxels(), 0U);
+  look(20);
+  EXPECT_EQ(map_.cloud().size(), 500U);
+  for (std::size_t i = 0; i < 500; ++i) EXPECT_GT(confirmed(i).x(), 19);
+}
+
+// Kilometres each way, with a grid of points in the world that is the same for all sweeps.
+TEST_F(RollingMapTest, FollowsTheRobotOverKilometres) {
+  const Eigen::Vector3d ways[] = {{2, 0, 0}, {-2, 1.1, 0.2}};
+  for (const Eigen::Vector3d& way : ways) {
+    map_ = RollingMap(settings_);
+    pose_ = Pose();
+    for (int sweep = 0; sweep < 2000; ++sweep) {
+      pose_.translation += way;
+      pose_.rotation = exponential({0, 0, 0.01 * sweep});
+      const Eigen::Vector3d middle = pose_.translation.array().round();
+      for (int x = -5; x <= 5; ++x) {
+        for (int y = -5; y <= 5; ++y) {
+          const Eigen::Vector3d point = middle + Eigen::Vector3d(x + 0.02, y - 0.03, 0.024);
+          see(point);
+        }
+      }
+      end_sweep();
+      ASSERT_LT((map_.origin() - pose_.translation).cwiseAbs().maxCoeff(), 30);
+      ASSERT_LT(map_.voxels(), 121U * 14);
+      if (sweep % 50 != 49) continue;
+      ASSERT_GT(map_.cloud().size(), 80U) << sweep;
+      for (std::size_t i = 0; i < map_.cloud().size(); ++i) {
+        const Eigen::Vector3d point = confirmed(i) - Eigen::Vector3d(0.02, -0.03, 0.024);
+        const Eigen::Vector3d rounded = point.array().round();
+        ASSERT_LT((point - rounded).norm(), 2e-3) << sweep;
+      }
+      EXPECT_EQ(map_.sight(middle + Eigen::Vector3d(0.02, -0.03, 0.024)), Sight::occupied);
+      // Halfway between the lidar and each point; only some of the beams are followed.
+      const Eigen::Vector3d lidar = pose_.translation + Eigen::Vector3d::UnitZ();
+      int empty = 0;
+      for (int k = 0; k < 121; ++k) {
+        const Eigen::Vector3d point = middle + Eigen::Vector3d(k % 11 - 5, k / 11 - 5, 0);
+        empty += map_.sight(0.5 * (lidar + point)) == Sight::empty ? 1 : 0;
+      }
+      EXPECT_GT(empty, 10) << sweep;
+      EXPECT_EQ(map_.sight(middle - Eigen::Vector3d(0, 0, 1.5)), Sight::unseen);
+    }
+  }
+}
+
+TEST_F(RollingMapTest, TakesEmptySweepsAndPointsAtTheLidarItself) {
+  end_sweep();
+  see({0, 0, 1});
+  end_sweep();
+  end_sweep();
+  EXPECT_LE(map_.voxels(), 1U);
+  map_.clear();
+  EXPECT_EQ(map_.voxels(), 0U);
+  EXPECT_EQ(map_.cloud().size(), 0U);
+  EXPECT_EQ(map_.sight({0, 0, 1}), Sight::unseen);
+}
+
+TEST_F(RollingMapTest, AllocatesNothing) {
+  const std::size_t before = test::allocations();
+  for (int i = 0; i < 50; ++i) {
+    pose_.translation.x() = i;
+    for (int k = 0; k < 1000; ++k) see({i + 0.01 * k, 0.1 * (k % 7), 0});
+    end_sweep();
+  }
+  EXPECT_EQ(test::allocations(), before);
+}
+
+}  // namespace
+}  // namespace scree
