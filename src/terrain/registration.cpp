@@ -14,7 +14,7 @@ constexpr std::size_t kLeastKeyPoints = 50;
 constexpr double kRangeNoise = 0.02;  // metres
 /// Points of a sweep share the errors of the surfels and of the motion within the sweep: they bind
 /// the pose only as firmly as this many fewer.
-constexpr double kShared = 40;
+constexpr double kShared = 15;
 
 constexpr std::size_t kTilts = 3, kHeadings = 8, kBins = 1 + kTilts * kHeadings;
 

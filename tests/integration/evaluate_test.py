@@ -134,6 +134,28 @@ class EvaluateTest(unittest.TestCase):
         table = self.scree("evaluate", truth, lists, truth, missed).stdout
         self.assertIn("coverage 1.000: 2 of 2 visible entries", table)
 
+    def test_drift_of_the_pose_is_a_share_of_the_way_and_degrees_a_minute(self):
+        poses, visible, lines = [], [], []
+        for i, (yaw_deg, aside) in enumerate([(0, 0), (1, 0.4), (2, 0.9), (-0.5, -0.3)]):
+            t_ns, half = i * 10_000_000_000, math.radians(yaw_deg) / 2
+            poses.append({"t_ns": t_ns, "p": [10 * i, 0, 0], "q": [1, 0, 0, 0]})
+            visible.append({"t_ns": t_ns, "ids": [], "ignore": []})
+            pose = {"p": [10 * i, aside, 0], "q": [math.cos(half), 0, 0, math.sin(half)]}
+            lines.append(json.dumps({"stamp_ns": t_ns, "pose": pose, "obstacles": []}) + "\n")
+        truth = self.write("t.json", self.example(poses=poses, visible=visible))
+        lists = self.write("l.jsonl", "".join(lines))
+        (error,) = self.evaluate(truth, lists)["pose_error"]
+        expected = {"way": 30, "seconds": 30, "final": 0.3, "most": 0.9,
+                    "final_share_of_way": 0.01, "most_share_of_way": 0.03,
+                    "yaw_deg": -0.5, "most_yaw_deg": 2,
+                    "yaw_deg_per_minute": -1, "most_yaw_deg_per_minute": 4}  # fmt: skip
+        self.assertEqual(list(error), list(expected))
+        for key, value in expected.items():
+            self.assertAlmostEqual(error[key], value, msg=key)
+        table = self.scree("evaluate", truth, lists).stdout.splitlines()
+        columns = [line.split()[2:] for line in table if line.startswith("drive 1")]
+        self.assertEqual(columns, ["30.00 0.300 0.900 1.00 3.00 -0.50 2.00 -1.00 4.00".split()])
+
     def test_no_list_at_all_does_not_count(self):
         truth, empty = self.write("t.json", self.example()), self.write("l.jsonl", "")
         self.assertFalse(self.evaluate(truth, empty)["counts"])

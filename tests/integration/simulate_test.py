@@ -171,8 +171,54 @@ class SimulateTest(unittest.TestCase):
         self.assertLess(self.path_length(truth), 1e-9)
         self.assertEqual(len(truth["visible"]), 5)
 
+    def test_faults_lie_between_the_sensors_and_the_host(self):
+        capture, truth, config = self.simulate("--seconds", "15", "--seed", "4", "--faults",
+                                               "--scene", "easy", "--reverse")  # fmt: skip
+        run = subprocess.run([SCREE, "info", capture, "--json"], capture_output=True, text=True, check=True)
+        lost = json.loads(run.stdout)["lost"]
+        self.assertAlmostEqual(lost / (15 * 754), 0.01, delta=0.004)
+
+        stream, _ = serial_bytes(os.path.join(capture, "imu.pcap"))
+        good, ticks, at = 0, [], 0
+        while (at := stream.find(b"\xfa\xff\x36", at)) >= 0:
+            message = stream[at : at + 5 + stream[at + 3]] if at + 3 < len(stream) else b""
+            if message and sum(message[1:]) % 256 == 0:
+                good += 1
+                ticks.append(int.from_bytes(message[12:16], "big"))
+                at += len(message)
+            else:
+                at += 1
+        sent = (ticks[-1] - ticks[0]) / 100 + 1
+        gaps = [(b - a) * 1e-4 for a, b in zip(ticks, ticks[1:])]
+        self.assertAlmostEqual(max(gaps), 2, delta=0.05)
+        missing = sent - good - 100 * max(gaps)
+        self.assertGreater(missing, 3)
+        self.assertLess(missing, 30)
+
+        times, counts = [], []
+        with open(os.path.join(capture, "can.log")) as file:
+            for line in file:
+                t, frame_id, data = re.fullmatch(r"\((\d+\.\d{6})\) can0 (\w+)#(\w+)\n", line).groups()
+                if int(frame_id, 16) == config["encoder"]["can_id"]:
+                    times.append(float(t))
+                    counts.append(signal(bytes.fromhex(data), config["encoder"]))
+        self.assertAlmostEqual(max(b - a for a, b in zip(times, times[1:])), 3, delta=0.05)
+        wrap = 1 << config["encoder"]["length"]
+        steps = [(b - a + wrap // 2) % wrap - wrap // 2 for a, b in zip(counts, counts[1:])]
+        if config["encoder"]["kind"] == "counter":
+            self.assertLess(sum(step for step in steps if step < 0) * config["encoder"]["scale"], -0.2)
+
+    def test_a_gap_is_where_it_was_asked_for(self):
+        capture, truth, _ = self.simulate("--seconds", "2", "--seed", "4", "--at-rest",
+                                          "--imu-gap", "0.5,0.7", "--encoder-gap", "1,0.4")  # fmt: skip
+        stream, _ = serial_bytes(os.path.join(capture, "imu.pcap"))
+        ticks = [int.from_bytes(sample[0x1060], "big") for sample in imu_samples(stream)]
+        self.assertAlmostEqual(max(b - a for a, b in zip(ticks, ticks[1:])) * 1e-4, 0.7, delta=0.02)
+
     def test_wrong_usage_exits_2(self):
-        for arguments in (["--scene", "swamp"], ["--speed", "9"], ["--rate", "50"]):
+        for arguments in (["--scene", "swamp"], ["--speed", "9"], ["--rate", "50"],
+                          ["--faults", "--seconds", "5"], ["--imu-gap", "3"],
+                          ["--imu-corruption", "2"], ["--at-rest", "--reverse"]):  # fmt: skip
             done = subprocess.run([SCREE, "simulate", self.folder, *arguments], capture_output=True)
             self.assertEqual(done.returncode, 2, arguments)
 

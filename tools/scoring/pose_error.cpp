@@ -26,11 +26,11 @@ PoseError pose_error(const std::vector<PosePair>& poses) {
     error.most = std::max(error.most, error.last);
     error.way += (pose.truth.translation - before).norm();
     before = pose.truth.translation;
+    error.yaw =
+        std::remainder(yaw_of(pose.reported) + turn - yaw_of(pose.truth), 2 * std::numbers::pi);
+    error.most_yaw = std::max(error.most_yaw, std::abs(error.yaw));
   }
-  const PosePair& last = poses.back();
-  error.yaw =
-      std::remainder(yaw_of(last.reported) + turn - yaw_of(last.truth), 2 * std::numbers::pi);
-  error.seconds = (static_cast<double>(last.t_ns) - static_cast<double>(first.t_ns)) * 1e-9;
+  error.seconds = (static_cast<double>(poses.back().t_ns) - static_cast<double>(first.t_ns)) * 1e-9;
   return error;
 }
 

@@ -6,12 +6,14 @@
 
 #include "commands.hpp"
 #include "lidar_capture.hpp"
+#include "motion_capture.hpp"
 #include "scree/app/pipeline.hpp"
 #include "scree/capture/capture.hpp"
 #include "scree/capture/pcd.hpp"
 #include "scree/drivers/velodyne/lidar_stream.hpp"
 #include "scree/publish/jsonl.hpp"
 #include "stages.hpp"
+#include "waiting_sweeps.hpp"
 
 namespace scree::cli {
 namespace {
@@ -95,10 +97,11 @@ void detect_in_capture(const Options& options) {
   LidarCapture capture(options.input, settings);
   auto pipeline = Pipeline::make(settings, settings_folder(options));
   if (!pipeline) throw Failure(pipeline.error().message);
+  MotionCapture motion(options.input, options.config, settings, pipeline->sensors());
 
   ListWriter writer(options.out);
   std::size_t sweeps = 0;
-  velodyne::LidarStream stream(settings.lidar, [&](Sweep& sweep) {
+  const auto process = [&](const Sweep& sweep) {
     writer.write(pipeline->process(sweep));
     const std::string name = fmt::format("sweep_{:06}", sweeps++);
     const StageCounts counts = pipeline->counts();
@@ -106,10 +109,22 @@ void detect_in_capture(const Options& options) {
     if (options.stages.empty()) return;
     write_stages(pipeline->detector(), pipeline->ground(), options.stages / name);
     fmt::print(writer.other_output(), "{}: {}\n", name, chain(counts));
+  };
+  WaitingSweeps waiting(settings.map.wait, *pipeline, process);
+  std::int64_t now_ns = 0;
+  velodyne::LidarStream stream(settings.lidar, [&](Sweep& sweep) {
+    if (!sweep.points.empty()) waiting.push(sweep, now_ns);
   });
-  capture.play(stream);
+  capture.play(stream, {}, [&](std::int64_t arrival_ns) {
+    now_ns = arrival_ns;
+    motion.play_until(arrival_ns);
+    waiting.process_ready(arrival_ns);
+  });
+  motion.finish();
+  waiting.process_all();
   writer.finish();
   report_capture(capture, stream);
+  motion.report();
 }
 
 }  // namespace

@@ -49,11 +49,13 @@ EncoderCapture::EncoderCapture(const fs::path& capture, const EncoderSettings& s
       log_(value_or_fail(CanLogReader::open(value_or_fail(can_file(capture))))),
       settings_(settings) {}
 
-void EncoderCapture::play(EncoderStream& stream) {
-  CanFrame frame;
-  for (std::string interface; log_.next(frame, &interface);) {
-    ++frames_[interface];
-    if (interface == settings_.interface) stream.take(frame);
+void EncoderCapture::play_until(std::int64_t arrival_ns, EncoderStream& stream) {
+  while (true) {
+    if (!has_next_) has_next_ = log_.next(next_, &interface_);
+    if (!has_next_ || next_.t_ns > arrival_ns) return;
+    has_next_ = false;
+    ++frames_[interface_];
+    if (interface_ == settings_.interface) stream.take(next_);
   }
 }
 

@@ -22,8 +22,9 @@ public:
   /// Throws Failure.
   EncoderCapture(const std::filesystem::path& capture, const EncoderSettings& settings);
 
-  /// Plays all frames of the encoder's interface into the stream.
-  void play(encoder::EncoderStream& stream);
+  /// Plays the frames of the encoder's interface that had arrived by then into the stream.
+  void play_until(std::int64_t arrival_ns, encoder::EncoderStream& stream);
+  void play(encoder::EncoderStream& stream) { play_until(INT64_MAX, stream); }
 
   /// Says on stderr what was refused, and why. Throws Failure when no signal was read.
   void report(const encoder::EncoderStream& stream) const;
@@ -35,6 +36,9 @@ private:
   CanLogReader log_;
   EncoderSettings settings_;
   std::map<std::string, std::uint64_t> frames_;  // by interface
+  CanFrame next_;
+  std::string interface_;  // of the next one
+  bool has_next_ = false;
 };
 
 }  // namespace scree::cli

@@ -37,14 +37,20 @@ ImuCapture::ImuCapture(const std::filesystem::path& capture)
   }
 }
 
-void ImuCapture::play(ImuStream& stream) {
-  PcapRecord record;
-  while (reader_.next(record)) {
-    if (reads_++ == 0) first_ns_ = record.arrival_ns;
-    last_ns_ = record.arrival_ns;
-    bytes_ += record.bytes.size();
-    stream.take(record.bytes, record.arrival_ns);
+void ImuCapture::play_until(std::int64_t arrival_ns, ImuStream& stream) {
+  while (true) {
+    if (!has_next_) has_next_ = reader_.next(next_);
+    if (!has_next_ || next_.arrival_ns > arrival_ns) return;
+    has_next_ = false;
+    if (reads_++ == 0) first_ns_ = next_.arrival_ns;
+    last_ns_ = next_.arrival_ns;
+    bytes_ += next_.bytes.size();
+    stream.take(next_.bytes, next_.arrival_ns);
   }
+}
+
+void ImuCapture::play(ImuStream& stream) {
+  play_until(INT64_MAX, stream);
   stream.flush();
 }
 

@@ -15,6 +15,8 @@ public:
   /// Throws Failure.
   explicit ImuCapture(const std::filesystem::path& capture);
 
+  /// Plays what had arrived by then into the stream.
+  void play_until(std::int64_t arrival_ns, xsens::ImuStream& stream);
   /// Plays the whole file into the stream, as the daemon would read it from the port, and flushes
   /// the stream.
   void play(xsens::ImuStream& stream);
@@ -31,6 +33,8 @@ public:
 private:
   std::string name_;
   PcapReader reader_;
+  PcapRecord next_;
+  bool has_next_ = false;
   std::uint64_t reads_ = 0, bytes_ = 0;
   std::int64_t first_ns_ = 0, last_ns_ = 0;
 };

@@ -40,11 +40,13 @@ LidarCapture::LidarCapture(const std::filesystem::path& capture, const Settings&
   }
 }
 
-void LidarCapture::play(LidarStream& stream, const OnDatagram& on_other) {
+void LidarCapture::play(LidarStream& stream, const OnDatagram& on_other,
+                        const std::function<void(std::int64_t)>& before) {
   Datagram datagram;
   while (reader_.next(datagram)) {
     if (datagrams_++ == 0) first_ns_ = datagram.arrival_ns;
     last_ns_ = datagram.arrival_ns;
+    if (before) before(datagram.arrival_ns);
     PortTraffic& traffic = ports_[datagram.destination_port];
     ++traffic.datagrams;
     ++traffic.sizes[datagram.payload.size()];

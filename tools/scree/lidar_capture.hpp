@@ -34,7 +34,9 @@ public:
   using OnDatagram = std::function<void(const Datagram&)>;
   /// Plays the whole file into the stream, as the daemon would receive it, and flushes the stream.
   /// Datagrams that are not the stream's go to `on_other`.
-  void play(velodyne::LidarStream& stream, const OnDatagram& on_other = {});
+  /// @param before called with the arrival of each datagram before it is taken
+  void play(velodyne::LidarStream& stream, const OnDatagram& on_other = {},
+            const std::function<void(std::int64_t)>& before = {});
 
   const std::map<std::uint16_t, PortTraffic>& ports() const { return ports_; }
   const FrameCounters& frames() const { return reader_.frames(); }

@@ -90,12 +90,18 @@ std::string warning_table(const ScoringResult& result) {
 
 std::string pose_table(const ScoringResult& result) {
   if (result.pose_errors.empty()) return "";
-  std::string text = "\npose error      way [m]  final [m]  most [m]  final/way  yaw [deg/min]\n";
+  std::string text = fmt::format(
+      "\n{:<12}{:>9}{:>9}{:>8}{:>9}{:>8}{:>9}{:>8}{:>9}{:>8}\n{:<12}{:>9}{:>9}{:>8}{:>9}{:>8}"
+      "{:>9}{:>8}{:>9}{:>8}\n",
+      "pose error", "way", "final", "most", "final", "most", "yaw", "most", "yaw", "most", "", "m",
+      "m", "m", "% of way", "%", "deg", "deg", "deg/min", "deg/min");
   for (std::size_t i = 0; i < result.pose_errors.size(); ++i) {
     const PoseError& error = result.pose_errors[i];
-    text +=
-        fmt::format("drive {:<8}{:>9.2f}{:>11.3f}{:>10.3f}{:>9.2f} %{:>15.2f}\n", i + 1, error.way,
-                    error.last, error.most, 100 * error.share(), degrees(error.yaw_per_minute()));
+    text += fmt::format("drive {:<6}{:>9.2f}{:>9.3f}{:>8.3f}{:>9.2f}{:>8.2f}", i + 1, error.way,
+                        error.last, error.most, 100 * error.share(), 100 * error.most_share());
+    text += fmt::format("{:>9.2f}{:>8.2f}{:>9.2f}{:>8.2f}\n", degrees(error.yaw),
+                        degrees(error.most_yaw), degrees(error.yaw_per_minute()),
+                        degrees(error.most_yaw_per_minute()));
   }
   return text;
 }
@@ -142,8 +148,11 @@ Json to_json(const PoseError& error) {
           {"final", error.last},
           {"most", error.most},
           {"final_share_of_way", error.share()},
+          {"most_share_of_way", error.most_share()},
           {"yaw_deg", degrees(error.yaw)},
-          {"yaw_deg_per_minute", degrees(error.yaw_per_minute())}};
+          {"most_yaw_deg", degrees(error.most_yaw)},
+          {"yaw_deg_per_minute", degrees(error.yaw_per_minute())},
+          {"most_yaw_deg_per_minute", degrees(error.most_yaw_per_minute())}};
 }
 
 }  // namespace

@@ -294,6 +294,38 @@ TEST(PoseError, GrowsWithScaleAndTurn) {
   EXPECT_NEAR(error.share(), error.last / 60, 1e-12);
 }
 
+TEST(PoseError, TellsTheMostFromTheLast) {
+  // 30 m in 30 s; halfway 2 degrees and 0.9 m off, at the end 0.5 degrees and 0.3 m to the right.
+  std::vector<PosePair> poses;
+  const std::vector<std::pair<double, double>> off = {{0, 0}, {1, 0.4}, {2, 0.9}, {-0.5, -0.3}};
+  for (std::size_t i = 0; i < off.size(); ++i) {
+    const auto [yaw, aside] = off[i];
+    Pose truth, reported;
+    truth.translation.x() = 10.0 * static_cast<double>(i);
+    reported.translation = {truth.translation.x(), aside, 0};
+    reported.rotation = from_roll_pitch_yaw(0, 0, radians(yaw));
+    poses.push_back({static_cast<std::int64_t>(i) * 10 * kSecond, reported, truth});
+  }
+  const PoseError error = pose_error(poses);
+  EXPECT_NEAR(error.last, 0.3, 1e-9);
+  EXPECT_NEAR(error.most, 0.9, 1e-9);
+  EXPECT_NEAR(error.share(), 0.01, 1e-9);
+  EXPECT_NEAR(error.most_share(), 0.03, 1e-9);
+  EXPECT_NEAR(degrees(error.yaw), -0.5, 1e-9);
+  EXPECT_NEAR(degrees(error.most_yaw), 2, 1e-9);
+  EXPECT_NEAR(degrees(error.yaw_per_minute()), -1, 1e-9);
+  EXPECT_NEAR(degrees(error.most_yaw_per_minute()), 4, 1e-9);
+}
+
+TEST(PoseError, OfASinglePoseOrNoneIsNothing) {
+  for (const auto& poses : {std::vector<PosePair>{}, {PosePair{5, {}, {}}}}) {
+    const PoseError error = pose_error(poses);
+    EXPECT_EQ(error.most_share(), 0);
+    EXPECT_EQ(error.yaw_per_minute(), 0);
+    EXPECT_EQ(error.most_yaw_per_minute(), 0);
+  }
+}
+
 TEST(Scoring, RunsAreSummedUp) {
   Scorer scorer;
   const Truth truth = standing({there(1, 5, 0)}, {1});

@@ -129,11 +129,13 @@ TEST(CanBus, LosesTheEncodersFramesButNotThoseOfOthers) {
   const Motion motion{Pose()};
   SimulatedEncoder encoder(motion, layout, {}, 1);
   constexpr std::int64_t kBegin = 1'598'601'600'000'000'000;
-  CanBus bus(file, layout, 1);
+  auto log = CanLogWriter::create(file);
+  ASSERT_TRUE(log);
+  CanBus bus(*log, layout, 1);
   bus.lose_encoder([](std::int64_t t_ns) { return t_ns >= kBegin + 2'000'000'000; });
   bus.start(kBegin, 100);
   bus.run_until(kBegin + 5'000'000'000, encoder);
-  ASSERT_TRUE(bus.close());
+  ASSERT_TRUE(log->close());
   std::ifstream stream(file);
   int encoders = 0, others_late = 0;
   for (std::string line; std::getline(stream, line);) {

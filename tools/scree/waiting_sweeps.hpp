@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <utility>
+
+#include "scree/app/pipeline.hpp"
+
+namespace scree::cli {
+
+/// Sweeps that wait for the IMU and encoder samples that cover them, as in the daemon, by the time
+/// of the capture.
+class WaitingSweeps {
+public:
+  /// Keeps a reference to the pipeline.
+  WaitingSweeps(double wait_s, Pipeline& pipeline, std::function<void(const Sweep&)> process)
+      : wait_ns_(static_cast<std::int64_t>(wait_s * 1e9)),
+        pipeline_(pipeline),
+        process_(std::move(process)) {}
+
+  void push(const Sweep& sweep, std::int64_t arrival_ns) {
+    waiting_.emplace_back(copy(sweep), arrival_ns + wait_ns_);
+    process_ready(arrival_ns);
+  }
+  /// Processes those that are covered, or have waited long enough.
+  void process_ready(std::int64_t now_ns) {
+    while (!waiting_.empty()) {
+      const auto& [sweep, due_ns] = waiting_.front();
+      if (now_ns < due_ns && !pipeline_.is_covered(sweep.end_ns)) return;
+      process_(sweep);
+      waiting_.pop_front();
+    }
+  }
+  void process_all() { process_ready(INT64_MAX); }
+
+private:
+  static Sweep copy(const Sweep& sweep) {
+    Sweep copied(sweep.points.size());
+    for (std::size_t i = 0; i < sweep.points.size(); ++i) {
+      copied.points.push_back(sweep.points.x[i], sweep.points.y[i], sweep.points.z[i],
+                              sweep.points.reflectivity[i]);
+      copied.time_ns.push_back(sweep.time_ns[i]);
+    }
+    copied.end_ns = sweep.end_ns;
+    copied.packets = sweep.packets;
+    copied.dropped = sweep.dropped;
+    return copied;
+  }
+
+  std::int64_t wait_ns_;
+  Pipeline& pipeline_;
+  std::function<void(const Sweep&)> process_;
+  std::deque<std::pair<Sweep, std::int64_t>> waiting_;
+};
+
+}  // namespace scree::cli
