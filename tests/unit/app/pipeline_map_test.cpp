@@ -1,0 +1,154 @@
+#include <gtest/gtest.h>
+
+#include "allocation_counter.hpp"
+#include "scree/app/pipeline.hpp"
+#include "terrain/rough_ground.hpp"
+
+namespace scree {
+namespace {
+
+constexpr double kSweep = 0.1;
+
+Settings small_settings() {
+  Settings settings;
+  settings.lidar = test::usual_lidar();
+  settings.map.max_points = 1 << 13;
+  settings.map.max_voxels = settings.detect_map.max_points = 1 << 16;
+  settings.detect_map.min_confidence = 0;
+  return settings;
+}
+
+/// A robot on its way, with the pipeline on board.
+class PipelineMap : public testing::Test {
+protected:
+  explicit PipelineMap(const Settings& settings = small_settings())
+      : settings_(settings),
+        pipeline_(settings, Detector(settings.detect_map, Network()),
+                  Detector(settings.detect_sweep, Network())) {}
+
+  const ObstacleList& go(int sweeps, bool speaks = true) {
+    const ObstacleList* list = nullptr;
+    for (int i = 0; i < sweeps; ++i) {
+      for (int k = 10 * sweeps_; speaks && k < 10 * (sweeps_ + 1); ++k) {
+        ImuSample imu = drive_.imu(0.01 * (k + 1));
+        EncoderSample wheel = drive_.wheel(0.01 * (k + 1));
+        imu.t_ns += shift_ns_;
+        wheel.t_ns += shift_ns_;
+        pipeline_.sensors().put(imu);
+        pipeline_.sensors().put(wheel);
+      }
+      ++sweeps_;
+      test::scan(ground_, drive_, settings_.lidar, kSweep * sweeps_, sweep_);
+      sweep_.end_ns += shift_ns_;
+      list = &pipeline_.process(sweep_);
+    }
+    return *list;
+  }
+
+  test::SimpleDrive drive_ = test::helix(1, 0.2, 0);
+  test::RoughGround ground_;
+  Settings settings_;
+  Pipeline pipeline_;
+  Sweep sweep_{1 << 13};
+  std::int64_t shift_ns_ = 0;
+  int sweeps_ = 0;
+};
+
+TEST_F(PipelineMap, TakesSweepsByThemselvesUntilAMotionSensorSpeaks) {
+  const ObstacleList& alone = go(2, false);
+  EXPECT_FALSE(pipeline_.uses_map());
+  EXPECT_EQ(alone.pose.translation, Eigen::Vector3d::Zero());
+  EXPECT_EQ(pipeline_.ground().size(), sweep_.points.size());
+  const ObstacleList& first = go(1);
+  EXPECT_TRUE(pipeline_.uses_map());
+  EXPECT_LT(first.pose.translation.norm(), 0.15);
+  const ObstacleList& list = go(10);
+  EXPECT_EQ(list.stamp_ns, sweep_.end_ns);
+  EXPECT_EQ(list.pose.translation, pipeline_.mapper().pose().translation);
+  EXPECT_NEAR(list.pose.translation.norm(), 1, 0.15);
+  EXPECT_GT(pipeline_.ground().size(), 1000U);
+  EXPECT_EQ(&pipeline_.ground(), &pipeline_.mapper().map().cloud());
+  go(2, false);
+  EXPECT_TRUE(pipeline_.uses_map()) << "also when they fall silent";
+}
+
+TEST_F(PipelineMap, WaitsForWhatIsStillToCome) {
+  EXPECT_TRUE(pipeline_.is_covered(test::nanoseconds(1))) << "no sensor, nothing to wait for";
+  drive_.put_imu(pipeline_.sensors(), 0, 1);
+  EXPECT_FALSE(pipeline_.is_covered(test::nanoseconds(1)));
+  drive_.put_imu(pipeline_.sensors(), 1, 1.02);
+  EXPECT_TRUE(pipeline_.is_covered(test::nanoseconds(1)));
+  EXPECT_TRUE(pipeline_.is_covered(test::nanoseconds(9))) << "silent for long";
+}
+
+TEST_F(PipelineMap, NothingIsAllocatedAfterTheStart) {
+  const std::size_t before = test::allocations();
+  go(3, false);
+  go(10);
+  go(4, false);
+  shift_ns_ = -3'600'000'000'000;
+  go(5);
+  sweep_.clear();
+  sweep_.end_ns = test::nanoseconds(kSweep * sweeps_ + 0.01) + shift_ns_;
+  pipeline_.process(sweep_);
+  go(2);
+  EXPECT_EQ(test::allocations(), before);
+  EXPECT_GT(pipeline_.counts().voxels, 1000U);
+}
+
+TEST_F(PipelineMap, GoesOnWhenTheClockIsSet) {
+  go(12);
+  for (const std::int64_t hours : {1, 500'000, -500'001, -400'000}) {
+    shift_ns_ += hours * 3'600'000'000'000;
+    const ObstacleList& list = go(8);
+    EXPECT_EQ(list.stamp_ns, sweep_.end_ns);
+    const Eigen::Vector3d truth = drive_.base(kSweep * sweeps_).translation;
+    EXPECT_NEAR(list.pose.translation.norm(), truth.norm(), 0.3) << hours;
+    EXPECT_GT(pipeline_.ground().size(), 1000U) << hours;
+  }
+}
+
+class PipelineMapTooSmall : public PipelineMap {
+protected:
+  PipelineMapTooSmall() : PipelineMap(few_points()) {}
+  static Settings few_points() {
+    Settings settings = small_settings();
+    settings.map.max_points = 1000;
+    return settings;
+  }
+};
+
+TEST_F(PipelineMapTooSmall, CountsThePointsThatItsMemoryDoesNotHold) {
+  go(3);
+  EXPECT_EQ(pipeline_.mapper().sweep().points.size(), 1000U);
+  EXPECT_EQ(pipeline_.counts().dropped, sweep_.points.size() - 1000);
+}
+
+// A second robot of the same kind sees the very same, to the last bit.
+TEST(PipelineMapAgain, GivesTheSameListsOnEveryRun) {
+  const Settings settings = small_settings();
+  const test::SimpleDrive drive = test::helix(1, 0.2, 0);
+  std::vector<std::vector<double>> runs(2);
+  for (std::vector<double>& values : runs) {
+    Pipeline pipeline(settings, Detector(settings.detect_map, Network()),
+                      Detector(settings.detect_sweep, Network()));
+    Sweep sweep(1 << 13);
+    drive.put_imu(pipeline.sensors(), 0, 1.2);
+    drive.put_wheel(pipeline.sensors(), 0, 1.2);
+    for (int i = 1; i <= 10; ++i) {
+      test::scan(test::RoughGround(), drive, settings.lidar, kSweep * i, sweep);
+      const ObstacleList& list = pipeline.process(sweep);
+      values.insert(values.end(), {list.pose.translation.x(), list.pose.rotation.z()});
+      for (const Obstacle& obstacle : list.obstacles) {
+        values.insert(values.end(),
+                      {static_cast<double>(obstacle.id), obstacle.center.x(), obstacle.center.y(),
+                       static_cast<double>(obstacle.confidence), obstacle.height});
+      }
+    }
+  }
+  EXPECT_GT(runs[0].size(), 20U) << "some obstacles are needed to compare";
+  EXPECT_EQ(runs[0], runs[1]);
+}
+
+}  // namespace
+}  // namespace scree
