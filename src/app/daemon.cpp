@@ -6,12 +6,15 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <optional>
 #include <thread>
 #include <utility>
 
 #include "clocks.hpp"
+#include "encoder_reader.hpp"
 #include "hand_over.hpp"
 #include "health_watch.hpp"
+#include "imu_reader.hpp"
 #include "lidar_reader.hpp"
 #include "scree/core/latency_histogram.hpp"
 #include "scree/publish/publisher.hpp"
@@ -50,14 +53,23 @@ latency_t summary(const LatencyHistogram& histogram) {
 
 class Threads final : public Daemon {
 public:
-  Threads(const Settings& settings, Process process, LidarPorts ports, Publisher publisher)
+  Threads(const Settings& settings, Process process, MotionInput motion, LidarPorts ports,
+          Publisher publisher)
       : sweeps_(kSweeps, [] { return TimedSweep(); }),
         lists_(kLists, [&] { return FoundList(max_obstacles(settings)); }),
         reader_(settings.lidar, std::move(ports), sweeps_),
         process_(std::move(process)),
+        motion_(std::move(motion)),
+        wait_ns_(static_cast<std::int64_t>(settings.map.wait * 1e9)),
         publisher_(std::move(publisher)),
         watch_(settings.lidar, steady_ns()) {
     health_.version = SCREE_VERSION;
+    if (motion_.sensors != nullptr) {
+      imu_.emplace(settings.imu, *motion_.sensors);
+      encoder_.emplace(settings.encoder, *motion_.sensors);
+      reading_imu_ = run("imu", [this] { imu_->run(); });
+      reading_encoder_ = run("encoder", [this] { encoder_->run(); });
+    }
     reading_ = run("lidar", [this] { reader_.run(); });
     detecting_ = run("detector", [this] { detect(); });
     publishing_ = run("publisher", [this] { publish(); });
@@ -69,6 +81,11 @@ public:
     sweeps_.wake();
     lists_.wake();
     for (std::thread* thread : {&reading_, &detecting_, &publishing_}) thread->join();
+    if (motion_.sensors == nullptr) return;
+    imu_->stop();
+    encoder_->stop();
+    reading_imu_.join();
+    reading_encoder_.join();
   }
 
   static std::size_t max_obstacles(const Settings& settings) {
@@ -85,11 +102,22 @@ private:
 
   void detect() {
     while (!stop_) {
-      sweeps_.wait(std::chrono::hours(1));
+      sweeps_.wait(kLook);
+      // Without sweeps too, so that the sensors' rings do not fill.
+      if (motion_.is_covered) motion_.is_covered(0);
       while (TimedSweep* sweep = stop_ ? nullptr : sweeps_.take_full()) {
+        wait_for_motion(*sweep);
         detect(*sweep);
         sweeps_.give_back(sweep);
       }
+    }
+  }
+
+  void wait_for_motion(const TimedSweep& sweep) const {
+    constexpr std::chrono::milliseconds kPause{1};
+    while (motion_.is_covered && !stop_ && !motion_.is_covered(sweep.sweep.end_ns)) {
+      if (steady_ns() - sweep.arrival_ns >= wait_ns_) return;
+      std::this_thread::sleep_for(kPause);
     }
   }
 
@@ -175,7 +203,11 @@ private:
   HandOver<FoundList> lists_;
   std::atomic<std::int64_t> lists_dropped_{0};
   LidarReader reader_;
+  std::optional<ImuReader> imu_;
+  std::optional<EncoderReader> encoder_;
   Process process_;
+  MotionInput motion_;
+  std::int64_t wait_ns_;
 
   // Of the publishing thread alone.
   Publisher publisher_;
@@ -186,12 +218,13 @@ private:
   std::int64_t last_list_ns_ = 0, last_report_ns_ = steady_ns();
   std::int64_t points_dropped_ = 0, reported_packets_ = 0;
 
-  std::thread reading_, detecting_, publishing_;
+  std::thread reading_, reading_imu_, reading_encoder_, detecting_, publishing_;
 };
 
 }  // namespace
 
-Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings, Process process) {
+Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings, Process process,
+                                              MotionInput motion) {
   auto ports = LidarPorts::open(settings.lidar);
   if (!ports) return tl::make_unexpected(ports.error());
   auto publisher = Publisher::open(settings.lcm.url, Threads::max_obstacles(settings));
@@ -200,8 +233,8 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings, Process 
                settings.lidar.address, ports->data.port(), ports->position.port(),
                settings.lidar.sender.empty() ? "any sender" : settings.lidar.sender);
   spdlog::info("publishing on {}", settings.lcm.url);
-  return std::make_unique<Threads>(settings, std::move(process), std::move(*ports),
-                                   std::move(*publisher));
+  return std::make_unique<Threads>(settings, std::move(process), std::move(motion),
+                                   std::move(*ports), std::move(*publisher));
 }
 
 }  // namespace scree

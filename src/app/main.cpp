@@ -8,6 +8,7 @@
 
 #include "scree/app/daemon.hpp"
 #include "scree/app/pipeline.hpp"
+#include "scree/drivers/encoder/dbc.hpp"
 
 namespace {
 
@@ -28,9 +29,17 @@ scree::Process process_of(scree::Pipeline& pipeline) {
   };
 }
 
+scree::MotionInput motion_of(scree::Pipeline& pipeline) {
+  return {&pipeline.sensors(),
+          [&pipeline](std::int64_t end_ns) { return pipeline.is_covered(end_ns); }};
+}
+
 int run(const std::filesystem::path& config) {
-  const auto settings = scree::load_settings(config);
+  auto settings = scree::load_settings(config);
   if (!settings) return failed(settings.error().message);
+  const auto encoder = scree::encoder::with_dbc(settings->encoder, config.parent_path());
+  if (!encoder) return failed(encoder.error().message);
+  settings->encoder = *encoder;
   auto pipeline = scree::Pipeline::make(*settings, config.parent_path());
   if (!pipeline) return failed(pipeline.error().message);
 
@@ -39,7 +48,7 @@ int run(const std::filesystem::path& config) {
   sigaddset(&stop_signals, SIGTERM);
   sigaddset(&stop_signals, SIGINT);
   pthread_sigmask(SIG_BLOCK, &stop_signals, nullptr);
-  auto daemon = scree::Daemon::start(*settings, process_of(*pipeline));
+  auto daemon = scree::Daemon::start(*settings, process_of(*pipeline), motion_of(*pipeline));
   if (!daemon) return failed(daemon.error().message);
 
   int signal = 0;

@@ -87,13 +87,14 @@ void Tracker::update(std::int64_t stamp_ns, std::span<const Obstacle> found,
   }
 }
 
-/// Whether the middle of a track lies in or next to a larger obstacle of its kind: shadows and the
-/// gaps between rings break pieces off.
+/// Whether the middle of a track lies in or next to a much larger obstacle of its kind: shadows and
+/// the gaps between rings break pieces off.
 bool Tracker::is_part(const Track& track) const {
   constexpr double kBeside = 0.3;  // metres
+  constexpr std::uint32_t kLarger = 3;
   return std::any_of(tracks_.begin(), tracks_.end(), [&](const Track& other) {
     return other.is_published && other.obstacle.kind == track.obstacle.kind &&
-           other.obstacle.points > track.obstacle.points &&
+           other.obstacle.points > kLarger * track.obstacle.points &&
            distance_to_box(other.obstacle, track.obstacle.center) <= kBeside;
   });
 }

@@ -8,6 +8,7 @@
 #include "scree/core/obstacle.hpp"
 #include "scree/core/result.hpp"
 #include "scree/core/sweep.hpp"
+#include "scree/sync/sync_buffer.hpp"
 
 namespace scree {
 
@@ -19,9 +20,17 @@ struct Dropped {
 /// The detector's work on one sweep: the list is valid until the next call. Called from one thread.
 using Process = std::function<const ObstacleList&(const Sweep& sweep, Dropped& dropped)>;
 
-/// The robot's daemon: one thread reads the lidar, one detects, one publishes lists and health and
-/// writes the log. Between them lie bounded rings; where one is full the newest is dropped and
-/// counted. A sensor that is lost is waited for, for ever.
+/// Where samples of the motion go, and whether they cover a sweep that ended then. Without sensors
+/// neither IMU nor encoder are read.
+struct MotionInput {
+  SyncBuffer* sensors = nullptr;
+  std::function<bool(std::int64_t end_ns)> is_covered;  ///< called from the thread of Process
+};
+
+/// The robot's daemon: one thread reads each sensor, one detects, one publishes lists and health
+/// and writes the log. Between them lie bounded rings; where one is full the newest is dropped and
+/// counted. A sensor that is lost is waited for, for ever. A sweep waits for the motion that covers
+/// it, but not longer than map.wait.
 ///
 /// Sweeps are on the monotonic clock, and so are the lists that `Process` makes of them; lists are
 /// published with the wall-clock time of then. Setting the wall clock disturbs nothing else.
@@ -29,7 +38,8 @@ class Daemon {
 public:
   /// Binds the ports, opens LCM and starts the threads. The caller blocks the signals that it waits
   /// for before, because threads inherit what is blocked.
-  static Result<std::unique_ptr<Daemon>> start(const Settings& settings, Process process);
+  static Result<std::unique_ptr<Daemon>> start(const Settings& settings, Process process,
+                                               MotionInput motion = {});
 
   /// Stops and joins the threads.
   virtual ~Daemon() = default;

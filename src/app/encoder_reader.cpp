@@ -1,0 +1,58 @@
+#include "encoder_reader.hpp"
+
+#include <poll.h>
+#include <spdlog/spdlog.h>
+
+#include <iterator>
+#include <utility>
+
+#include "clocks.hpp"
+
+namespace scree {
+namespace {
+
+constexpr int kRetryMs = static_cast<int>(encoder::CanSocket::kRetryNs / 1'000'000);
+
+}  // namespace
+
+EncoderReader::EncoderReader(const EncoderSettings& settings, SyncBuffer& sensors)
+    : settings_(settings),
+      stream_(settings, [&sensors](const EncoderSample& sample) { sensors.put(sample); }) {}
+
+void EncoderReader::run() {
+  while (true) {
+    if (!socket_) open();
+    pollfd wait_for[] = {{socket_ ? socket_->descriptor() : -1, POLLIN, 0},
+                         {stop_.descriptor(), POLLIN, 0}};
+    if (poll(wait_for, std::size(wait_for), kRetryMs) < 0) continue;  // a signal came between
+    if (wait_for[1].revents != 0) return;
+    if (socket_) read();
+  }
+}
+
+void EncoderReader::open() {
+  auto opened = encoder::CanSocket::open(settings_);
+  if (opened) {
+    socket_.emplace(std::move(*opened));
+    spdlog::info("encoder: listening on {}", settings_.interface);
+  } else if (opened.error().message != said_) {
+    said_ = opened.error().message;
+    spdlog::warn("encoder: {}", said_);
+  }
+}
+
+void EncoderReader::read() {
+  while (auto frame = socket_->receive()) {
+    frame->t_ns = clock_.to_monotonic(frame->t_ns, read_clocks());
+    stream_.take(*frame);
+  }
+  socket_->retry(steady_ns());
+  if (socket_->state() == state_) return;
+  state_ = socket_->state();
+  const auto index = static_cast<std::size_t>(state_);
+  const std::string_view advice = encoder::kBusStateAdvice[index];
+  spdlog::log(advice.empty() ? spdlog::level::info : spdlog::level::warn, "encoder: bus {}{}{}",
+              encoder::kBusStateNames[index], advice.empty() ? "" : ", ", advice);
+}
+
+}  // namespace scree

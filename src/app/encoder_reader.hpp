@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "event.hpp"
+#include "scree/config/settings.hpp"
+#include "scree/drivers/encoder/can_socket.hpp"
+#include "scree/drivers/encoder/encoder_stream.hpp"
+#include "scree/sync/host_clock.hpp"
+#include "scree/sync/sync_buffer.hpp"
+
+namespace scree {
+
+/// Listens to the encoder's bus and puts its samples into the buffer, on the monotonic clock. An
+/// interface that is not there is waited for. run() is the work of a thread; it blocks only in
+/// poll(), and says in the log when the state of the bus changes.
+class EncoderReader {
+public:
+  /// Keeps a reference to the buffer.
+  /// @param settings with what their DBC file says
+  EncoderReader(const EncoderSettings& settings, SyncBuffer& sensors);
+
+  /// Returns after stop() was called from another thread.
+  void run();
+  void stop() { stop_.wake(); }
+
+private:
+  void open();
+  void read();
+
+  EncoderSettings settings_;
+  std::optional<encoder::CanSocket> socket_;
+  encoder::EncoderStream stream_;
+  HostClock clock_;
+  encoder::BusState state_ = encoder::BusState::silent;
+  std::string said_;
+  Event stop_;
+};
+
+}  // namespace scree

@@ -1,0 +1,69 @@
+#include "imu_reader.hpp"
+
+#include <poll.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "clocks.hpp"
+
+namespace scree {
+namespace {
+
+constexpr int kRetryMs = 1000;  // while there is no port
+
+int milliseconds_until(std::int64_t due_ns) {
+  const std::int64_t left_ns = due_ns - steady_ns();
+  return static_cast<int>(std::clamp<std::int64_t>(left_ns / 1'000'000 + 1, 0, kRetryMs));
+}
+
+}  // namespace
+
+ImuReader::ImuReader(const ImuSettings& settings, SyncBuffer& sensors)
+    : settings_(settings),
+      stream_(settings, [&sensors](const ImuSample& sample) { sensors.put(sample); }) {}
+
+void ImuReader::run() {
+  while (true) {
+    if (!device_) open();
+    pollfd wait_for[] = {{device_ ? device_->descriptor() : -1, POLLIN, 0},
+                         {stop_.descriptor(), POLLIN, 0}};
+    const int longest = device_ ? milliseconds_until(device_->due_ns()) : kRetryMs;
+    if (poll(wait_for, std::size(wait_for), longest) < 0) continue;  // a signal came between
+    if (wait_for[1].revents != 0) return;
+    if (device_) read();
+  }
+}
+
+void ImuReader::open() {
+  auto opened = xsens::Device::open(settings_);
+  if (opened) {
+    device_.emplace(std::move(*opened));
+  } else {
+    say(opened.error().message);
+  }
+}
+
+void ImuReader::read() {
+  while (const auto received = device_->advance(steady_ns())) {
+    stream_.take(received->bytes, clock_.to_monotonic(received->arrival_ns, read_clocks()));
+  }
+  const bool measures = device_->state() == xsens::DeviceState::measuring;
+  if (measures && !measures_) {
+    spdlog::info("IMU: measuring on {}", settings_.device);
+    said_.clear();
+  } else if (!measures) {
+    say(device_->problem());
+  }
+  measures_ = measures;
+}
+
+void ImuReader::say(const std::string& problem) {
+  if (problem.empty() || problem == said_) return;
+  spdlog::warn("IMU: {}", problem);
+  said_ = problem;
+}
+
+}  // namespace scree

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "event.hpp"
+#include "scree/config/settings.hpp"
+#include "scree/drivers/xsens/device.hpp"
+#include "scree/drivers/xsens/imu_stream.hpp"
+#include "scree/sync/host_clock.hpp"
+#include "scree/sync/sync_buffer.hpp"
+
+namespace scree {
+
+/// Keeps the IMU measuring and puts its samples into the buffer, on the monotonic clock. A port
+/// that is not there is waited for. run() is the work of a thread; it blocks only in poll(), and
+/// says in the log when the device is lost or measures again.
+class ImuReader {
+public:
+  /// Keeps a reference to the buffer.
+  ImuReader(const ImuSettings& settings, SyncBuffer& sensors);
+
+  /// Returns after stop() was called from another thread.
+  void run();
+  void stop() { stop_.wake(); }
+
+private:
+  void open();
+  void read();
+  void say(const std::string& problem);
+
+  ImuSettings settings_;
+  std::optional<xsens::Device> device_;
+  xsens::ImuStream stream_;
+  HostClock clock_;
+  bool measures_ = false;
+  std::string said_;
+  Event stop_;
+};
+
+}  // namespace scree
