@@ -49,11 +49,14 @@ Refusal Odometer::take(const Reading& reading) {
   }
   if (reading.t_ns <= last_.t_ns) return suspect(Refusal::time, reading);
   const bool is_long_ago = reading.t_ns - last_.t_ns >= kGapNs;
+  const double speed_before = trend() ? trend()->speed : 0;
   if (is_long_ago) past_size_ = 0;
   if (is_counter && stands_frozen(reading)) return Refusal::frozen;
   if (!agree(last_, reading) || !fits_trend(reading)) return suspect(Refusal::implausible, reading);
   if (is_long_ago && (!is_counter || may_have_wrapped(reading))) return rebase(reading, 0);
-  if (is_after_gap && is_nearer_to_zero(reading)) return rebase(reading, 0);
+  if (is_counter && is_after_gap && has_restarted(reading, speed_before)) {
+    return rebase(reading, 0);
+  }
   return accept(reading, moved(last_, reading));
 }
 
@@ -74,13 +77,19 @@ bool Odometer::agree(const Reading& from, const Reading& to) const {
   return std::abs(moved(from, to)) <= settings_.max_speed * (time + kJitter) + 2 * quantum_;
 }
 
-bool Odometer::fits_trend(const Reading& reading) const {
-  if (settings_.kind == EncoderKind::speed || past_size_ == 0) return true;
+std::optional<Odometer::Trend> Odometer::trend() const {
+  if (past_size_ == 0) return std::nullopt;
   const Past &first = past_.front(), &last = past_[past_size_ - 1];
   const double window = seconds(first.t_ns, last.t_ns);
-  if (window < kLeastTrend) return true;
-  const double speed = (last.distance - first.distance) / window;
-  const double time = seconds(last.t_ns, reading.t_ns);
+  if (window < kLeastTrend) return std::nullopt;
+  return Trend{window, (last.distance - first.distance) / window};
+}
+
+bool Odometer::fits_trend(const Reading& reading) const {
+  const auto past = trend();
+  if (settings_.kind == EncoderKind::speed || !past) return true;
+  const auto [window, speed] = *past;
+  const double time = seconds(last_.t_ns, reading.t_ns);
   const double acceleration = settings_.max_acceleration;
   // How far the speed at the end of the past may be from its mean, and the mean from the truth.
   const double error =
@@ -95,12 +104,14 @@ bool Odometer::may_have_wrapped(const Reading& reading) const {
   return settings_.max_speed * (seconds(last_.t_ns, reading.t_ns) + kJitter) >= half;
 }
 
-bool Odometer::is_nearer_to_zero(const Reading& reading) const {
-  if (settings_.kind == EncoderKind::speed) return false;
-  const auto from = [&](std::int64_t raw) {
-    return std::abs(counts(raw, reading.raw, settings_.length));
-  };
-  return from(0) < from(last_.raw);
+bool Odometer::has_restarted(const Reading& reading, double speed_before) const {
+  const Reading zero{last_.t_ns, 0, 0};
+  const double way = moved(last_, reading), from_zero = moved(zero, reading);
+  // A device that is back after a while has counted a part of what was rolled meanwhile.
+  const double expected = speed_before * seconds(last_.t_ns, reading.t_ns);
+  const double counted = std::clamp(from_zero, std::min(expected, 0.0), std::max(expected, 0.0));
+  return std::abs(from_zero) < std::abs(way) &&
+         std::abs(from_zero - counted) < std::abs(way - expected);
 }
 
 bool Odometer::stands_frozen(const Reading& reading) {

@@ -1,30 +1,36 @@
 #include "scree/capture/capture.hpp"
 
+#include <initializer_list>
+
 namespace scree {
 
 namespace fs = std::filesystem;
 
 namespace {
 
-/// The capture itself when it is a file, else <stem>.pcap or <stem>.pcapng in its folder.
-Result<fs::path> pcap_of(const fs::path& capture, const std::string& stem) {
+/// The capture itself when it is a file, else the first of these names that is in its folder.
+Result<fs::path> file_of(const fs::path& capture, std::initializer_list<const char*> names) {
   std::error_code ignored;
   if (!fs::exists(capture, ignored)) return fail(capture.string() + ": no such file or folder");
   if (!fs::is_directory(capture, ignored)) return capture;
-  for (const char* ending : {".pcap", ".pcapng"}) {
-    if (fs::exists(capture / (stem + ending), ignored)) return capture / (stem + ending);
+  for (const char* name : names) {
+    if (fs::exists(capture / name, ignored)) return capture / name;
   }
-  return fail(capture.string() + ": the folder has no " + stem + ".pcap");
+  return fail(capture.string() + ": the folder has no " + *names.begin());
 }
 
 }  // namespace
 
 Result<fs::path> lidar_file(const fs::path& capture) {
-  return pcap_of(capture, "lidar");
+  return file_of(capture, {"lidar.pcap", "lidar.pcapng"});
 }
 
 Result<fs::path> imu_file(const fs::path& capture) {
-  return pcap_of(capture, "imu");
+  return file_of(capture, {"imu.pcap", "imu.pcapng"});
+}
+
+Result<fs::path> can_file(const fs::path& capture) {
+  return file_of(capture, {"can.log"});
 }
 
 std::optional<fs::path> settings_file(const fs::path& capture, const fs::path& given) {
@@ -34,14 +40,6 @@ std::optional<fs::path> settings_file(const fs::path& capture, const fs::path& g
     return capture / "scree.toml";
   }
   return std::nullopt;
-}
-
-Result<fs::path> can_file(const fs::path& capture) {
-  std::error_code ignored;
-  if (!fs::exists(capture, ignored)) return fail(capture.string() + ": no such file or folder");
-  if (!fs::is_directory(capture, ignored)) return capture;
-  if (fs::exists(capture / "can.log", ignored)) return capture / "can.log";
-  return fail(capture.string() + ": the folder has no can.log");
 }
 
 }  // namespace scree

@@ -33,7 +33,7 @@ DetectSettings DetectSettings::for_map() {
   detect.max_edge_points = 1 << 17;
   detect.max_obstacles = 512;
   detect.voxel_grid = false;
-  detect.shadow_gap = 0.5;
+  detect.cluster_tolerance = 0.30;
   detect.network = "network_map.txt";
   detect.min_confidence = 0.05;
   return detect;

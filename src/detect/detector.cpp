@@ -68,9 +68,7 @@ Detector::Detector(const DetectSettings& settings, Network network)
               count(settings.max_points)),
       surface_(settings.uses_surface() ? count(settings.max_points) : 0,
                settings.uses_surface() ? count(settings.max_ground_cells) : 0),
-      surroundings_(settings.uses_surface() ? count(settings.max_ground_cells) : 0),
-      gap_bridge_(settings.uses_surface() ? count(settings.max_ground_cells) : 0,
-                  settings.uses_surface() ? count(settings.max_edge_points) : 0) {
+      surroundings_(settings.uses_surface() ? count(settings.max_ground_cells) : 0) {
   limit_ = common_reach(settings_, gradient_, suppression_);
 }
 
@@ -182,12 +180,7 @@ void Detector::find_clusters() {
   if (settings_.cluster_method == ClusterMethod::euclidean) {
     euclidean_.cluster(edges.points, tolerance);
     std::ranges::copy(euclidean_.labels(), labels_.begin());
-    std::size_t clusters = euclidean_.count();
-    if (settings_.uses_surface() && settings_.shadow_gap > 0) {
-      clusters = gap_bridge_.join(cells_.points(), height_, kept(), labels_, surface_,
-                                  static_cast<float>(settings_.shadow_gap));
-    }
-    sizes_.assign(clusters, 0);
+    sizes_.assign(euclidean_.count(), 0);
     for (const std::uint32_t label : labels_) ++sizes_[label];
   } else {
     supervoxels_.segment(edges,

@@ -79,10 +79,23 @@ void Tracker::update(std::int64_t stamp_ns, std::span<const Obstacle> found,
           confidence >= static_cast<float>(settings_.appear) && track.found >= kLeastFound;
       if (track.is_published && track.obstacle.id == 0) track.obstacle.id = next_id_++;
     }
-    if (!track.is_published) continue;
-    track.obstacle.confidence = confidence;
+  }
+  for (Track& track : tracks_) {
+    if (!track.is_published || is_part(track)) continue;
+    track.obstacle.confidence = track.confidence();
     if (!obstacles.push_back(track.obstacle)) ++dropped_;
   }
+}
+
+/// Whether the middle of a track lies in or next to a larger obstacle of its kind: shadows and the
+/// gaps between rings break pieces off.
+bool Tracker::is_part(const Track& track) const {
+  constexpr double kBeside = 0.3;  // metres
+  return std::any_of(tracks_.begin(), tracks_.end(), [&](const Track& other) {
+    return other.is_published && other.obstacle.kind == track.obstacle.kind &&
+           other.obstacle.points > track.obstacle.points &&
+           distance_to_box(other.obstacle, track.obstacle.center) <= kBeside;
+  });
 }
 
 void Tracker::match(std::span<const Obstacle> found) {

@@ -180,6 +180,53 @@ class DecodeTest(unittest.TestCase):
         self.assertGreater(len(done.stdout.splitlines()), 70 * 12 * 16)
         self.assertIn("breaks off", done.stderr)
 
+    def test_decode_lists_every_encoder_reading(self):
+        can = "(1598601600.000001) can0 1A0#FEFFFFFF\n(1598601600.010001) can0 0C8#01\n"
+        can += "(1598601600.010002) can1 1A0#07000000\n(1598601600.020001) can0 1A0#00000070\n"
+        can += "(1598601600.030001) can0 1A0#00\nnonsense\n(1598601600.040001) can0 1A0#01000000"
+        self.path("can.log", can)
+        done = self.scree("decode", self.folder, "--sensor", "encoder")
+        self.assertEqual(done.stdout.splitlines(), [
+            "t_ns,raw,value", "1598601600000001000,-2,-0.000314",
+            "1598601600020001000,1879048192,295010.566144", "1598601600040001000,1,0.000157"])  # fmt: skip
+        self.assertIn("1 lines refused", done.stderr)
+        self.assertIn("2 frames refused", done.stderr)
+        self.path("scree.toml", "[encoder]\nsigned = false\nscale = 1\n")
+        done = self.scree("decode", self.folder, "--sensor", "encoder")
+        self.assertIn("1598601600000001000,4294967294,4294967294\n", done.stdout)
+
+    def test_a_dbc_file_beside_the_configuration_places_the_signal(self):
+        self.path("can.log", "(5.000001) can0 000001D0#0102\n(5.010001) can0 1D0#0BB8\n")
+        self.path("robot.dbc", "BO_ 464 SPEEDS: 2 A\n"
+                  ' SG_ LEFT : 7|16@0+ (0.01,-10) [0|0] "km/h" A\n')  # fmt: skip
+        toml = '[encoder]\ndbc = "robot.dbc"\nsignal = "SPEEDS.{}"\nkind = "{}"\n{}\n'
+        said = {"signal": ("LEFD", "speed", "scale = 0.27"), "kph": ("LEFT", "speed", "scale = 1"),
+                "kind": ("LEFT", "counter", "scale = 0.27"), "scale": ("LEFT", "speed", "")}  # fmt: skip
+        for word, values in said.items():
+            self.path("scree.toml", toml.format(*values))
+            error = self.scree("decode", self.folder, "--sensor", "encoder", code=1).stderr
+            self.assertIn(word.replace("kph", "1 km/h is 0.277778 m/s"), error)
+            self.assertEqual(len(error.splitlines()), 1, error)
+        self.path("scree.toml", toml.format("LEFT", "speed", "scale = 0.25"))
+        lines = self.scree("decode", self.folder, "--sensor", "encoder").stdout.splitlines()
+        self.assertEqual(lines[1:], ["5010001000,3000,5"])
+
+    def test_no_encoder_reading_is_one_sentence_and_exit_1(self):
+        def said(log):
+            self.path("can.log", log)
+            error = self.scree("decode", self.folder, "--sensor", "encoder", code=1).stderr
+            self.assertEqual(len(error.splitlines()), 1, error)
+            return error
+
+        error = self.scree("decode", self.folder, "--sensor", "encoder", code=1).stderr
+        self.assertIn("no can.log", error)
+        self.assertIn("no frame with identifier 0x1A0", said("(5.0) can0 1A1#01\n"))
+        self.assertIn("no frame of can0, but 1 of can7", said("(5.0) can7 1A0#01020304\n"))
+        self.assertIn("frame is shorter than the signal", said("(5.0) can0 1A0#0102\n"))
+        self.assertIn("error frame", said("(5.0) can0 20000040#0000000000000000\n"))
+        self.assertIn("no CAN frame", said(""))
+        self.assertIn("not of the form", said("nonsense\n"))
+
     def test_failures_are_one_sentence_and_exit_1(self):
         empty, foreign = self.path("empty.pcap", ""), self.path("foreign.pcap", "no capture at all")
         for capture in (self.path("none.pcap"), empty, foreign):

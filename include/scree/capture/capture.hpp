@@ -15,12 +15,12 @@ Result<std::filesystem::path> lidar_file(const std::filesystem::path& capture);
 /// in its folder.
 Result<std::filesystem::path> imu_file(const std::filesystem::path& capture);
 
+/// The CAN log of a capture: the capture itself when it is a file, else can.log in its folder.
+Result<std::filesystem::path> can_file(const std::filesystem::path& capture);
+
 /// The configuration that belongs to a capture: `given` when not empty, else scree.toml in the
 /// capture's folder when there is one. Nothing: the defaults.
 std::optional<std::filesystem::path> settings_file(const std::filesystem::path& capture,
                                                    const std::filesystem::path& given);
-
-/// The CAN log of a capture: the capture itself when it is a file, else can.log in its folder.
-Result<std::filesystem::path> can_file(const std::filesystem::path& capture);
 
 }  // namespace scree

@@ -87,9 +87,6 @@ void for_each_detect_key(std::string_view table, Detect& detect, Visit&& visit) 
   key("cluster_tolerance", detect.cluster_tolerance, "m", 0.001, 10,
       "centres (or edge points) closer than this belong together: larger merges close obstacles, "
       "smaller splits rims");
-  key("shadow_gap", detect.shadow_gap, "m", 0, 10,
-      "with ground = surface and cluster_method = euclidean: clusters this close belong together when "
-      "no ground was seen between them; 0 joins none");
   key("min_cluster_size", detect.min_cluster_size, "", 1, 100000,
       "least number of super-voxels (or of edge points, with euclidean) of an obstacle");
   key("ground_inner", detect.ground_inner, "m", 0, 10,

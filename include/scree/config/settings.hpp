@@ -197,7 +197,6 @@ struct DetectSettings {
   double normal_weight = 1.0;
   int min_block_points = 4;
   double cluster_tolerance = 0.40;
-  double shadow_gap = 0;
   int min_cluster_size = 3;
 
   double ground_inner = 0.15;

@@ -8,7 +8,6 @@
 #include "scree/detect/edge_points.hpp"
 #include "scree/detect/elevation_gradient.hpp"
 #include "scree/detect/euclidean_clusters.hpp"
-#include "scree/detect/gap_bridge.hpp"
 #include "scree/detect/ground_height.hpp"
 #include "scree/detect/ground_surface.hpp"
 #include "scree/detect/network.hpp"
@@ -105,7 +104,6 @@ private:
   GroundHeight ground_;
   GroundSurface surface_;
   Surroundings surroundings_;
-  GapBridge gap_bridge_;
 };
 
 }  // namespace scree

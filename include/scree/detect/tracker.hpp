@@ -50,6 +50,7 @@ private:
   };
 
   void match(std::span<const Obstacle> found);
+  bool is_part(const Track& track) const;
   void learn(Track& track, const Obstacle* found, float share) const;
 
   TrackingSettings settings_;

@@ -5,6 +5,7 @@
 
 #include <random>
 
+#include "scree/capture/capture.hpp"
 #include "unit/temporary_folder.hpp"
 
 namespace scree {
@@ -148,6 +149,15 @@ TEST(CanLogReader, AMissingFileIsOneSentence) {
   ASSERT_FALSE(reader);
   EXPECT_THAT(reader.error().message, HasSubstr("/nonexistent/can.log"));
   EXPECT_FALSE(CanLogReader::open("/"));
+}
+
+TEST(CanFile, IsTheCaptureOrInItsFolder) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(can_file(folder / "").error().message, HasSubstr("has no can.log"));
+  EXPECT_THAT(can_file(folder / "none").error().message, HasSubstr("no such file or folder"));
+  const auto log = folder.write("can.log", "");
+  EXPECT_EQ(can_file(folder / "").value(), log);
+  EXPECT_EQ(can_file(log).value(), log);
 }
 
 TEST(CanLogWriter, WritesAsCandumpAndReadsBack) {

@@ -63,6 +63,19 @@ TEST(Settings, MistakesNameFileLineKeyAndWhatIsAccepted) {
   EXPECT_THAT(error_of("[detect.cloud]\nground_inner = 5\n"), HasSubstr("ground_outer"));
 }
 
+TEST(Settings, ContradictionsOfTheEncoderAreOneSentence) {
+  EXPECT_THAT(error_of("[encoder]\nstart_bit = 500\n"), HasSubstr("beyond the 64 bytes"));
+  EXPECT_THAT(error_of("[encoder]\nstart_bit = 487\nbyte_order = \"big_endian\"\n"), "no error");
+  EXPECT_THAT(error_of("[encoder]\nstart_bit = 486\nbyte_order = \"big_endian\"\n"),
+              HasSubstr("beyond the 64 bytes"));
+  EXPECT_THAT(error_of("[encoder]\nscale = 0\n"), HasSubstr("must not be 0"));
+  EXPECT_THAT(error_of("[encoder]\nsignal = \"A.B\"\n"),
+              HasSubstr("encoder.dbc and encoder.signal"));
+  EXPECT_THAT(error_of("[encoder]\ndbc = \"a.dbc\"\nsignal = \"A.B\"\n"),
+              HasSubstr("encoder.dbc needs encoder.scale"));
+  EXPECT_EQ(error_of("[encoder]\ndbc = \"a.dbc\"\nsignal = \"A.B\"\nscale = 1\n"), "no error");
+}
+
 TEST(Settings, MissingFileIsOneSentence) {
   const auto settings = load_settings("/nonexistent/scree.toml");
   ASSERT_FALSE(settings);

@@ -172,6 +172,17 @@ TEST(Odometer, ADeviceThatRestartedInAGapDoesNotMakeTheDistanceJump) {
   EXPECT_EQ(wheel.odometer.rebased(), 1U);
 }
 
+TEST(Odometer, ARobotThatReversesTowardsZeroInAGapHasNotRestarted) {
+  Wheel wheel(counter());
+  wheel.roll(5, 1, 1);
+  wheel.roll(1, -1, -1);  // 4 m from zero
+  wheel.pause(3);
+  wheel.way -= 3.1;
+  EXPECT_EQ(wheel.roll(0.5, -1, -1), 0);
+  EXPECT_NEAR(wheel.odometer.distance(), wheel.way - 0.01, 0.0003);
+  EXPECT_EQ(wheel.odometer.rebased(), 0U);
+}
+
 TEST(Odometer, RepeatedAndLateStampsAreRefused) {
   Wheel wheel(counter());
   wheel.roll(1, 1, 1);

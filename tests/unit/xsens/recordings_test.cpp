@@ -17,21 +17,13 @@
 
 #include "scree/capture/pcap_reader.hpp"
 #include "scree/drivers/xsens/imu_stream.hpp"
+#include "unit/recordings.hpp"
 #include "unit/temporary_folder.hpp"
 
 namespace scree::xsens {
 namespace {
 
 namespace fs = std::filesystem;
-
-fs::path shared(const std::string& name) {
-  return fs::path(SCREE_SHARED_DATA) / name;
-}
-
-#define NEEDS(file)                                                      \
-  if (!fs::exists(shared(file))) {                                       \
-    GTEST_SKIP() << "the recording " << shared(file) << " is not there"; \
-  }
 
 std::string text_of(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "scree/config/settings.hpp"
 #include "scree/drivers/encoder/refusal.hpp"
@@ -36,8 +37,9 @@ struct Reading {
 ///   over 50 ms, the last of them is accepted, and the distance goes on from there without the jump
 ///   before the first of them (rebased).
 /// - A counter's, 350 ms or more after the one before, when it may have wrapped unseen; or after as
-///   long without any frame, when it is nearer to zero than to where it was, as that of a restarted
-///   device; a speed's, as long after the one before: accepted without the difference (rebased).
+///   long without any frame, when it is nearer to zero than to where it was, and the speed before
+///   speaks more for a device that has restarted at zero than for one that has counted on; a
+///   speed's, as long after the one before: accepted without the difference (rebased).
 class Odometer {
 public:
   explicit Odometer(const EncoderSettings& settings);
@@ -54,9 +56,14 @@ private:
   double moved(const Reading& from, const Reading& to) const;
   /// Whether a wheel can be the cause of both, whatever it did before.
   bool agree(const Reading& from, const Reading& to) const;
+  /// Over the accepted readings of the last 250 ms; nothing where these are too few.
+  struct Trend {
+    double window, speed;  ///< seconds, m/s
+  };
+  std::optional<Trend> trend() const;
   bool fits_trend(const Reading& reading) const;
   bool may_have_wrapped(const Reading& reading) const;
-  bool is_nearer_to_zero(const Reading& reading) const;
+  bool has_restarted(const Reading& reading, double speed_before) const;
   bool stands_frozen(const Reading& reading);
   bool stopped_too_fast() const;
   Refusal suspect(Refusal reason, const Reading& reading);
