@@ -19,8 +19,8 @@ struct Surfel {
 
 /// The ground around the robot as planes in cubic cells, for registration. Bounded: cells lie in a
 /// box that repeats endlessly in all directions, and a cell is taken over by the place that was
-/// seen last. So what the robot leaves behind is forgotten. Points are floats in `odom`: good to 1 mm
-/// as far as 8 km from its origin, to 1 cm as far as 80 km.
+/// seen last. So what the robot leaves behind is forgotten. Points are floats in `odom`: good to 1
+/// mm as far as 8 km from its origin, to 1 cm as far as 80 km.
 class SurfelMap {
 public:
   /// @param cell edge, metres

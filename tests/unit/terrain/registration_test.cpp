@@ -100,6 +100,30 @@ TEST_F(RegistrationTest, FlatGroundBindsHeightRollAndPitchOnly) {
   EXPECT_LT(rotation.y(), 0.2);
 }
 
+// Where floats are coarse and the numbers of cells are large.
+TEST_F(RegistrationTest, WorksManyKilometresFromTheOrigin) {
+  const test::RoughGround rough;
+  constexpr double kFar = 12'000.3;
+  for (double x = -9; x < 9; x += 0.06) {
+    for (double y = -9; y < 9; y += 0.06) {
+      map_.add(Eigen::Vector3d(kFar + x, y, rough.height(x, y)).cast<float>());
+    }
+  }
+  MotionStep step;
+  step.knows_attitude = step.knows_distance = true;
+  filter_.predict(step);
+  step.end_ns = 2'000'000'000;
+  step.moved.x() = kFar;
+  step.distance = 500;
+  filter_.predict(step);
+  const Pose truth{{0.08, -0.05, 0.03}, from_roll_pitch_yaw(0.005, -0.004, 0)};
+  const Registration::Outcome outcome = align(rough, truth);
+  EXPECT_GT(outcome.key_points, 200);
+  const Eigen::Vector3d found = filter_.pose().translation - Eigen::Vector3d(kFar, 0, 0);
+  EXPECT_LT((found - truth.translation).norm(), 0.015);
+  EXPECT_LT(filter_.pose().rotation.angularDistance(truth.rotation), radians(0.3));
+}
+
 /// A ditch along x binds y and yaw, and still says nothing of x.
 TEST_F(RegistrationTest, ADitchLeavesTheDirectionAlongIt) {
   const auto ditch = [](double y) { return 0.25 * std::sin(1.5 * y); };
