@@ -226,7 +226,7 @@ class DetectTest(unittest.TestCase):
         )
         self.assertEqual(scores["coverage"], 1)
         self.assertGreater(scores["all"]["f1"], 0.92)
-        self.assertLess(scores["pose_errors"][0]["final_share_of_way"], 0.01)
+        self.assertLess(scores["pose_error"][0]["final_share_of_way"], 0.01)
         # An obstacle keeps its id: far fewer ids than obstacles reported.
         ids = [obstacle["id"] for each in lists for obstacle in each["obstacles"]]
         self.assertLess(len(set(ids)), len(ids) / 10)
