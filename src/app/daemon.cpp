@@ -53,20 +53,20 @@ latency_t summary(const LatencyHistogram& histogram) {
 
 class Threads final : public Daemon {
 public:
-  Threads(const Settings& settings, Process process, MotionInput motion, LidarPorts ports,
+  Threads(const Settings& settings, Process process, SyncBuffer* sensors, LidarPorts ports,
           Publisher publisher)
       : sweeps_(kSweeps, [] { return TimedSweep(); }),
         lists_(kLists, [&] { return FoundList(max_obstacles(settings)); }),
         reader_(settings.lidar, std::move(ports), sweeps_),
         process_(std::move(process)),
-        motion_(std::move(motion)),
+        sensors_(sensors),
         wait_ns_(static_cast<std::int64_t>(settings.map.wait * 1e9)),
         publisher_(std::move(publisher)),
         watch_(settings.lidar, steady_ns()) {
     health_.version = SCREE_VERSION;
-    if (motion_.sensors != nullptr) {
-      imu_.emplace(settings.imu, *motion_.sensors);
-      encoder_.emplace(settings.encoder, *motion_.sensors);
+    if (sensors_ != nullptr) {
+      imu_.emplace(settings.imu, *sensors_);
+      encoder_.emplace(settings.encoder, *sensors_);
       reading_imu_ = run("imu", [this] { imu_->run(); });
       reading_encoder_ = run("encoder", [this] { encoder_->run(); });
     }
@@ -81,7 +81,7 @@ public:
     sweeps_.wake();
     lists_.wake();
     for (std::thread* thread : {&reading_, &detecting_, &publishing_}) thread->join();
-    if (motion_.sensors == nullptr) return;
+    if (sensors_ == nullptr) return;
     imu_->stop();
     encoder_->stop();
     reading_imu_.join();
@@ -104,7 +104,7 @@ private:
     while (!stop_) {
       sweeps_.wait(kLook);
       // Without sweeps too, so that the sensors' rings do not fill.
-      if (motion_.is_covered) motion_.is_covered(0);
+      if (sensors_ != nullptr) sensors_->gather();
       while (TimedSweep* sweep = stop_ ? nullptr : sweeps_.take_full()) {
         wait_for_motion(*sweep);
         detect(*sweep);
@@ -115,7 +115,9 @@ private:
 
   void wait_for_motion(const TimedSweep& sweep) const {
     constexpr std::chrono::milliseconds kPause{1};
-    while (motion_.is_covered && !stop_ && !motion_.is_covered(sweep.sweep.end_ns)) {
+    while (sensors_ != nullptr && !stop_) {
+      sensors_->gather();
+      if (sensors_->covers(sweep.sweep.end_ns)) return;
       if (steady_ns() - sweep.arrival_ns >= wait_ns_) return;
       std::this_thread::sleep_for(kPause);
     }
@@ -206,7 +208,7 @@ private:
   std::optional<ImuReader> imu_;
   std::optional<EncoderReader> encoder_;
   Process process_;
-  MotionInput motion_;
+  SyncBuffer* sensors_;
   std::int64_t wait_ns_;
 
   // Of the publishing thread alone.
@@ -224,7 +226,7 @@ private:
 }  // namespace
 
 Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings, Process process,
-                                              MotionInput motion) {
+                                              SyncBuffer* sensors) {
   auto ports = LidarPorts::open(settings.lidar);
   if (!ports) return tl::make_unexpected(ports.error());
   auto publisher = Publisher::open(settings.lcm.url, Threads::max_obstacles(settings));
@@ -233,8 +235,8 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings, Process 
                settings.lidar.address, ports->data.port(), ports->position.port(),
                settings.lidar.sender.empty() ? "any sender" : settings.lidar.sender);
   spdlog::info("publishing on {}", settings.lcm.url);
-  return std::make_unique<Threads>(settings, std::move(process), std::move(motion),
-                                   std::move(*ports), std::move(*publisher));
+  return std::make_unique<Threads>(settings, std::move(process), sensors, std::move(*ports),
+                                   std::move(*publisher));
 }
 
 }  // namespace scree

@@ -29,11 +29,6 @@ scree::Process process_of(scree::Pipeline& pipeline) {
   };
 }
 
-scree::MotionInput motion_of(scree::Pipeline& pipeline) {
-  return {&pipeline.sensors(),
-          [&pipeline](std::int64_t end_ns) { return pipeline.is_covered(end_ns); }};
-}
-
 int run(const std::filesystem::path& config) {
   auto settings = scree::load_settings(config);
   if (!settings) return failed(settings.error().message);
@@ -48,7 +43,7 @@ int run(const std::filesystem::path& config) {
   sigaddset(&stop_signals, SIGTERM);
   sigaddset(&stop_signals, SIGINT);
   pthread_sigmask(SIG_BLOCK, &stop_signals, nullptr);
-  auto daemon = scree::Daemon::start(*settings, process_of(*pipeline), motion_of(*pipeline));
+  auto daemon = scree::Daemon::start(*settings, process_of(*pipeline), &pipeline->sensors());
   if (!daemon) return failed(daemon.error().message);
 
   int signal = 0;

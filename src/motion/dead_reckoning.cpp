@@ -94,7 +94,6 @@ MotionStep DeadReckoning::advance(const SyncBuffer& sensors, std::int64_t begin_
   step.attitude = state_.attitude;
   step.moved = state_.position;
   step.distance = distance_;
-  step.turned = begin_.attitude.angularDistance(state_.attitude);
   step.knows_attitude = state_.knows_attitude;
   step.knows_distance = state_.knows_distance;
 

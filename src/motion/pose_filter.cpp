@@ -47,8 +47,6 @@ Eigen::Vector3d tilt_of(const Eigen::Quaterniond& frame) {
 
 }  // namespace
 
-PoseFilter::PoseFilter() = default;
-
 void PoseFilter::predict(const MotionStep& step) {
   if (!started_) {
     started_ = true;

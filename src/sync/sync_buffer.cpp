@@ -46,8 +46,6 @@ Eigen::Vector3d mean_rate(const ImuSample& before, const ImuSample& after) {
 
 }  // namespace
 
-SyncBuffer::SyncBuffer() = default;
-
 bool SyncBuffer::put(const ImuSample& sample) {
   if (imu_ring_.push(sample)) return true;
   dropped_.fetch_add(1, std::memory_order_relaxed);

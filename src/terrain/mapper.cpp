@@ -7,13 +7,6 @@ namespace {
 
 constexpr float kSurfel = 0.3F;  // metres
 
-RollingMapSettings map_settings(const MapSettings& map) {
-  return {.voxel = map.voxel,
-          .reach = map.reach,
-          .keep_seconds = map.keep_seconds,
-          .max_voxels = static_cast<std::size_t>(map.max_voxels)};
-}
-
 }  // namespace
 
 Mapper::Mapper(const Settings& settings)
@@ -24,16 +17,16 @@ Mapper::Mapper(const Settings& settings)
       sweep_(static_cast<std::size_t>(settings.map.max_points)),
       registration_(static_cast<std::size_t>(settings.map.max_points)),
       surfels_(kSurfel),
-      map_(map_settings(settings.map)) {}
+      map_(settings.map) {}
 
 void Mapper::add(const Sweep& sweep, const SyncBuffer& sensors) {
   const std::int64_t begin_ns = sweep.end_ns + (sweep.points.empty() ? 0 : sweep.time_ns[0]);
   const Pose before = filter_.pose();
   step_ = dead_reckoning_.advance(sensors, begin_ns, sweep.end_ns, track_);
+  const bool has_known_attitude = filter_.has_known_attitude();
   filter_.predict(step_);
-  if (step_.knows_attitude && !has_known_attitude_) {
+  if (filter_.has_known_attitude() && !has_known_attitude) {
     // What was mapped before leans as the robot stood.
-    has_known_attitude_ = true;
     surfels_.clear();
     map_.clear();
   }

@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 #include <cstdlib>
-#include <utility>
 
 #include "scree/core/floor_to_cell.hpp"
 
@@ -18,13 +17,13 @@ constexpr std::uint16_t kMostPassed = 4;
 
 }  // namespace
 
-RollingMap::RollingMap(const RollingMapSettings& settings)
+RollingMap::RollingMap(const MapSettings& settings)
     : settings_(settings),
       inverse_(static_cast<float>(1 / settings.voxel)),
-      voxels_(settings.max_voxels),
-      index_(std::bit_ceil(2 * settings.max_voxels)),
+      voxels_(static_cast<std::size_t>(settings.max_voxels)),
+      index_(std::bit_ceil(2 * voxels_.capacity())),
       mask_(index_.capacity() - 1),
-      cloud_(settings.max_voxels) {
+      cloud_(voxels_.capacity()) {
   clear();
 }
 
@@ -41,7 +40,7 @@ RollingMap::Key RollingMap::key_of(const Eigen::Vector3f& point) const {
           static_cast<std::int16_t>(floor_to_cell(point.z() * inverse_))};
 }
 
-std::size_t RollingMap::slot_of(const Key& key) const {
+std::size_t RollingMap::first_slot(const Key& key) const {
   const auto wide = [](std::int16_t value) {
     return std::uint64_t{static_cast<std::uint16_t>(value)};
   };
@@ -50,24 +49,20 @@ std::size_t RollingMap::slot_of(const Key& key) const {
   return static_cast<std::size_t>(word >> 32U) & mask_;
 }
 
-const RollingMap::Voxel* RollingMap::find(const Key& key) const {
-  for (std::size_t slot = slot_of(key); index_[slot] != 0; slot = (slot + 1) & mask_) {
-    const Voxel& voxel = voxels_[index_[slot] - 1];
-    if (voxel.key == key) return &voxel;
-  }
-  return nullptr;
+std::size_t RollingMap::slot_of(const Key& key) const {
+  std::size_t slot = first_slot(key);
+  while (index_[slot] != 0 && voxels_[index_[slot] - 1].key != key) slot = (slot + 1) & mask_;
+  return slot;
 }
 
-RollingMap::Voxel* RollingMap::find(const Key& key) {
-  return const_cast<Voxel*>(std::as_const(*this).find(key));
+const RollingMap::Voxel* RollingMap::find(const Key& key) const {
+  const std::uint32_t number = index_[slot_of(key)];
+  return number == 0 ? nullptr : &voxels_[number - 1];
 }
 
 RollingMap::Voxel* RollingMap::find_or_add(const Key& key) {
-  std::size_t slot = slot_of(key);
-  for (; index_[slot] != 0; slot = (slot + 1) & mask_) {
-    Voxel& voxel = voxels_[index_[slot] - 1];
-    if (voxel.key == key) return &voxel;
-  }
+  const std::size_t slot = slot_of(key);
+  if (index_[slot] != 0) return &voxels_[index_[slot] - 1];
   if (voxels_.full()) return nullptr;
   Voxel voxel;
   voxel.key = key;
@@ -83,7 +78,7 @@ void RollingMap::remove(std::size_t index) {
   std::size_t gap = voxels_[index].slot;
   for (std::size_t slot = (gap + 1) & mask_; index_[slot] != 0; slot = (slot + 1) & mask_) {
     Voxel& other = voxels_[index_[slot] - 1];
-    const std::size_t home = slot_of(other.key);
+    const std::size_t home = first_slot(other.key);
     if (((slot - home) & mask_) < ((slot - gap) & mask_)) continue;
     index_[gap] = index_[slot];
     other.slot = static_cast<std::uint32_t>(gap);
@@ -115,8 +110,7 @@ void RollingMap::recentre(const Pose& pose) {
     voxel.key.x = static_cast<std::int16_t>(voxel.key.x - cells(shift.x()));
     voxel.key.y = static_cast<std::int16_t>(voxel.key.y - cells(shift.y()));
     voxel.key.z = static_cast<std::int16_t>(voxel.key.z - cells(shift.z()));
-    std::size_t slot = slot_of(voxel.key);
-    while (index_[slot] != 0) slot = (slot + 1) & mask_;
+    const std::size_t slot = slot_of(voxel.key);
     index_[slot] = static_cast<std::uint32_t>(i + 1);
     voxel.slot = static_cast<std::uint32_t>(slot);
   }
@@ -175,11 +169,13 @@ void RollingMap::see_through(const DeskewedSweep& sweep, const Eigen::Matrix3f& 
     }
     for (float way = std::max(0.0F, end - kSeenThrough); way < end; way += voxel_size) {
       const Eigen::Vector3f place = from + way * along;
-      Voxel* const voxel = find(key_of(place));
-      if (voxel == nullptr || voxel->last_sweep == sweep_) continue;
-      const Eigen::Vector3f off = voxel->mean - from;
+      const std::uint32_t number = index_[slot_of(key_of(place))];
+      if (number == 0) continue;
+      Voxel& voxel = voxels_[number - 1];
+      if (voxel.last_sweep == sweep_) continue;
+      const Eigen::Vector3f off = voxel.mean - from;
       if ((off - off.dot(along) * along).squaredNorm() > near * near) continue;
-      ++voxel->passed;
+      ++voxel.passed;
     }
   }
 }

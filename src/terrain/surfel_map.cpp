@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scree/core/floor_to_cell.hpp"
-
 namespace scree {
 namespace {
 
@@ -17,8 +15,7 @@ constexpr float kLeastWidth = 0.12F;  // of the cell's edge
 
 }  // namespace
 
-SurfelMap::SurfelMap(float cell)
-    : cell_(cell), inverse_(1 / cell), cells_(static_cast<std::size_t>(kWide) * kWide * kHigh) {
+SurfelMap::SurfelMap(float cell) : cell_(cell), inverse_(1 / cell), cells_(Box::kCells) {
   cells_.resize(cells_.capacity());
 }
 
@@ -26,30 +23,19 @@ void SurfelMap::clear() {
   for (Cell& cell : cells_) cell.is_used = false;
 }
 
-SurfelMap::Place SurfelMap::place(const Eigen::Vector3f& point) const {
-  const std::int32_t x = floor_to_cell(point.x() * inverse_);
-  const std::int32_t y = floor_to_cell(point.y() * inverse_);
-  const std::int32_t z = floor_to_cell(point.z() * inverse_);
-  const auto wrap = [](std::int32_t value, int size) {
-    return static_cast<std::size_t>(value & (size - 1));
-  };
-  return {x, y, z, (wrap(z, kHigh) * kWide + wrap(y, kWide)) * kWide + wrap(x, kWide)};
-}
-
 Eigen::Vector3f SurfelMap::middle(const Cell& cell) const {
-  return Eigen::Vector3f(static_cast<float>(cell.x) + 0.5F, static_cast<float>(cell.y) + 0.5F,
-                         static_cast<float>(cell.z) + 0.5F) *
+  return Eigen::Vector3f(static_cast<float>(cell.place.x) + 0.5F,
+                         static_cast<float>(cell.place.y) + 0.5F,
+                         static_cast<float>(cell.place.z) + 0.5F) *
          cell_;
 }
 
 void SurfelMap::add(const Eigen::Vector3f& point) {
-  const Place at = place(point);
-  Cell& cell = cells_[at.index];
-  if (!cell.is_used || cell.x != at.x || cell.y != at.y || cell.z != at.z) {
+  const Box::Place place = Box::place(point, inverse_);
+  Cell& cell = cells_[place.index()];
+  if (!cell.is_used || cell.place != place) {
     cell = Cell();
-    cell.x = at.x;
-    cell.y = at.y;
-    cell.z = at.z;
+    cell.place = place;
     cell.is_used = true;
   }
   if (cell.points > kMostPoints) {
@@ -73,9 +59,9 @@ void SurfelMap::add(const Eigen::Vector3f& point) {
 }
 
 const Surfel* SurfelMap::at(const Eigen::Vector3f& point) {
-  const Place at = place(point);
-  Cell& cell = cells_[at.index];
-  if (!cell.is_used || cell.x != at.x || cell.y != at.y || cell.z != at.z) return nullptr;
+  const Box::Place place = Box::place(point, inverse_);
+  Cell& cell = cells_[place.index()];
+  if (!cell.is_used || cell.place != place) return nullptr;
   if (!cell.is_fresh) fit(cell);
   return cell.is_plane ? &cell.surfel : nullptr;
 }

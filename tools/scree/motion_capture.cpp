@@ -19,12 +19,13 @@ void note(const std::string& text) {
 MotionCapture::MotionCapture(const std::filesystem::path& capture,
                              const std::filesystem::path& config, const Settings& settings,
                              SyncBuffer& sensors)
-    : imu_stream_(settings.imu, [&sensors](const ImuSample& sample) { sensors.put(sample); }),
-      encoder_stream_(encoder_settings(capture, config),
+    : encoder_settings_(encoder_settings(capture, config)),
+      imu_stream_(settings.imu, [&sensors](const ImuSample& sample) { sensors.put(sample); }),
+      encoder_stream_(encoder_settings_,
                       [&sensors](const EncoderSample& sample) { sensors.put(sample); }) {
   if (!std::filesystem::is_directory(capture)) return;
   if (imu_file(capture)) imu_.emplace(capture);
-  if (can_file(capture)) encoder_.emplace(capture, encoder_settings(capture, config));
+  if (can_file(capture)) encoder_.emplace(capture, encoder_settings_);
 }
 
 void MotionCapture::play_until(std::int64_t arrival_ns) {

@@ -25,6 +25,7 @@ public:
   void report() const;
 
 private:
+  EncoderSettings encoder_settings_;  // with what their DBC file says
   std::optional<ImuCapture> imu_;
   std::optional<EncoderCapture> encoder_;
   xsens::ImuStream imu_stream_;

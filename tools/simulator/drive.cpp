@@ -147,6 +147,7 @@ DriveFeed::DriveFeed(const Drive& drive)
       encoder_(make_encoder(drive)),
       observer_(drive.terrain, drive.motion, truth_),
       next_sample_(imu_.next()),
+      encoder_gain_(1 + draw_encoder(drive.settings).scale_error),
       encoder_ns_(kDriveStartNs - kEncoderStepNs) {
   truth_.obstacles = true_obstacles(drive.terrain);
 }
@@ -190,12 +191,11 @@ void DriveFeed::feed_until(std::int64_t t_ns, SyncBuffer& sensors) {
                           .rate = next_sample_.rate_of_turn,
                           .acceleration = next_sample_.acceleration});
   }
-  const double gain = 1 + draw_encoder(drive_.settings).scale_error;
   for (; encoder_ns_ < t_ns; encoder_ns_ += kEncoderStepNs) {
     encoder_.frame(encoder_ns_);
     EncoderSample sample;
     sample.t_ns = encoder_ns_;
-    sample.distance = sample.value = encoder_.turned() * gain;
+    sample.distance = sample.value = encoder_.turned() * encoder_gain_;
     sensors.put(sample);
   }
 }

@@ -91,6 +91,7 @@ private:
   Truth truth_;
   Observer observer_;
   ImuMessage next_sample_;
+  double encoder_gain_;  ///< of its scale's error
   std::int64_t encoder_ns_;
   double turns_ = 0;                               // handed out
   std::size_t shot_ = SimulatedLidar::kMostShots;  // the next of the packet

@@ -20,13 +20,6 @@ struct Dropped {
 /// The detector's work on one sweep: the list is valid until the next call. Called from one thread.
 using Process = std::function<const ObstacleList&(const Sweep& sweep, Dropped& dropped)>;
 
-/// Where samples of the motion go, and whether they cover a sweep that ended then. Without sensors
-/// neither IMU nor encoder are read.
-struct MotionInput {
-  SyncBuffer* sensors = nullptr;
-  std::function<bool(std::int64_t end_ns)> is_covered;  ///< called from the thread of Process
-};
-
 /// The robot's daemon: one thread reads each sensor, one detects, one publishes lists and health
 /// and writes the log. Between them lie bounded rings; where one is full the newest is dropped and
 /// counted. A sensor that is lost is waited for, for ever. A sweep waits for the motion that covers
@@ -38,8 +31,10 @@ class Daemon {
 public:
   /// Binds the ports, opens LCM and starts the threads. The caller blocks the signals that it waits
   /// for before, because threads inherit what is blocked.
+  /// @param sensors where samples of the motion go, its consumer the thread of Process; without it
+  /// neither IMU nor encoder are read
   static Result<std::unique_ptr<Daemon>> start(const Settings& settings, Process process,
-                                               MotionInput motion = {});
+                                               SyncBuffer* sensors = nullptr);
 
   /// Stops and joins the threads.
   virtual ~Daemon() = default;

@@ -17,10 +17,11 @@ struct MotionStep {
   Eigen::Quaterniond attitude = Eigen::Quaterniond::Identity();  ///< of `base` in `level`, at end
   Eigen::Vector3d moved = Eigen::Vector3d::Zero();               ///< in `level`, metres
   double distance = 0;  ///< that the wheel says, or that was assumed; backwards below zero
-  double turned = 0;    ///< angle between the attitudes, rad
   bool knows_attitude = false, knows_distance = false;  ///< measured up to the end
   /// Not below zero, and little more than DeadReckoning::kLongestWaitNs.
   double seconds() const { return static_cast<double>(end_ns - begin_ns) * 1e-9; }
+  /// Angle between the attitudes, rad.
+  double turned() const { return begin_attitude.angularDistance(attitude); }
 };
 
 /// Where `base` was during a sweep, in `base` at the sweep's end, in equal steps of time.

@@ -27,8 +27,6 @@ public:
   using Errors = Eigen::Matrix<double, kErrors, 1>;
   using Covariance = Eigen::Matrix<double, kErrors, kErrors>;
 
-  PoseFilter();
-
   /// Starts at the origin with the yaw of `attitude` as zero, or, later, takes a new attitude of
   /// the `level` frame at the same pose.
   void predict(const MotionStep& step);
@@ -50,6 +48,8 @@ public:
   const Covariance& covariance() const { return covariance_; }
   double scale_error() const { return scale_; }
   double yaw_drift() const { return drift_; }
+  /// Whether the IMU has ever been heard.
+  bool has_known_attitude() const { return has_known_attitude_ || knew_attitude_; }
 
 private:
   void join(const MotionStep& step);

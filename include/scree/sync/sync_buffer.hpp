@@ -36,8 +36,6 @@ public:
   /// before is forgotten.
   static constexpr std::int64_t kSetBackNs = 1'000'000'000;
 
-  SyncBuffer();
-
   // Producers, one thread each. False: no room, dropped and counted.
   bool put(const ImuSample& sample);
   bool put(const EncoderSample& sample);

@@ -5,16 +5,17 @@
 #include <cstdint>
 
 #include "scree/core/fixed_vector.hpp"
+#include "scree/terrain/endless_box.hpp"
 
 namespace scree {
 
 /// When beams last went through the space around the robot, in coarse cells. Bounded: the cells lie
-/// in a box that repeats endlessly, and a cell belongs to the place that was passed last.
+/// in an EndlessBox, and a cell belongs to the place that was passed last.
 class FreeSpace {
 public:
   static constexpr float kCell = 0.25F;  ///< metres; the box is 32 m wide and 8 m high
 
-  FreeSpace() : cells_(std::size_t{kWide} * kWide * kHigh) { clear(); }
+  FreeSpace() : cells_(Box::kCells) { clear(); }
 
   void clear() { cells_.assign(cells_.capacity(), {}); }
   void pass(const Eigen::Vector3f& place, std::uint32_t sweep);
@@ -22,17 +23,12 @@ public:
   std::uint32_t last_passed(const Eigen::Vector3f& place) const;
 
 private:
-  static constexpr int kWide = 128, kHigh = 32;
+  using Box = EndlessBox<128, 32>;
 
   struct Cell {
-    std::int16_t x = 0, y = 0, z = 0;
+    Box::Place place;
     std::uint32_t sweep = 0;
   };
-  struct Place {
-    std::int16_t x, y, z;
-    std::size_t index;
-  };
-  static Place at(const Eigen::Vector3f& place);
 
   FixedVector<Cell> cells_;
 };

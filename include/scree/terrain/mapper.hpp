@@ -37,7 +37,7 @@ private:
   void assume_motion(const Pose& before);
 
   LidarSettings lidar_;
-  bool registers_, has_known_attitude_ = false;
+  bool registers_;
   double surfel_reach_;
   DeadReckoning dead_reckoning_;
   MotionTrack track_;

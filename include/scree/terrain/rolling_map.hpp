@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "scree/config/settings.hpp"
 #include "scree/core/fixed_vector.hpp"
 #include "scree/core/point_cloud.hpp"
 #include "scree/core/pose.hpp"
@@ -13,19 +14,12 @@
 
 namespace scree {
 
-struct RollingMapSettings {
-  double voxel = 0.05;       ///< edge, metres
-  double reach = 12;         ///< points farther than this from the robot are forgotten, metres
-  double keep_seconds = 60;  ///< ... and those that were not seen for this long
-  std::size_t max_voxels = 1 << 19;
-};
-
 /// The ground around the robot, put together of its sweeps: voxels in `odom`, around the robot,
 /// bounded in number, reach and age. A voxel keeps the mean of its points. Points that no second
 /// sweep confirms stay out of the cloud; what beams pass through again and again is forgotten.
 class RollingMap {
 public:
-  explicit RollingMap(const RollingMapSettings& settings);
+  explicit RollingMap(const MapSettings& settings);
 
   /// Adds a sweep that ended at `end_ns`, seen from `pose` (`base` in `odom`), and forgets.
   void add(const DeskewedSweep& sweep, const Pose& pose, std::int64_t end_ns);
@@ -63,8 +57,9 @@ private:
   };
 
   Key key_of(const Eigen::Vector3f& point) const;
+  /// Where in the index a voxel stands, or the free place where it would.
   std::size_t slot_of(const Key& key) const;
-  Voxel* find(const Key& key);
+  std::size_t first_slot(const Key& key) const;
   const Voxel* find(const Key& key) const;
   Voxel* find_or_add(const Key& key);
   void remove(std::size_t index);
@@ -75,7 +70,7 @@ private:
   bool is_confirmed(const Voxel& voxel) const;
   void gather_cloud();
 
-  RollingMapSettings settings_;
+  MapSettings settings_;
   float inverse_;
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
   FixedVector<Voxel> voxels_;

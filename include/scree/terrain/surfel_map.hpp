@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "scree/core/fixed_vector.hpp"
+#include "scree/terrain/endless_box.hpp"
 
 namespace scree {
 
@@ -17,10 +18,10 @@ struct Surfel {
   float points = 0;
 };
 
-/// The ground around the robot as planes in cubic cells, for registration. Bounded: cells lie in a
-/// box that repeats endlessly in all directions, and a cell is taken over by the place that was
-/// seen last. So what the robot leaves behind is forgotten. Points are floats in `odom`: good to 1
-/// mm as far as 8 km from its origin, to 1 cm as far as 80 km.
+/// The ground around the robot as planes in cubic cells, for registration. Bounded: cells lie in an
+/// EndlessBox, and a cell is taken over by the place that was seen last. So what the robot leaves
+/// behind is forgotten. Points are floats in `odom`: good to 1 mm as far as 8 km from its origin,
+/// to 1 cm as far as 80 km.
 class SurfelMap {
 public:
   /// @param cell edge, metres
@@ -32,14 +33,13 @@ public:
   /// points.
   const Surfel* at(const Eigen::Vector3f& point);
   void clear();
-  float cell() const { return cell_; }
 
 private:
   // 38 m x 38 m x 19 m at cells of 0.3 m.
-  static constexpr int kWide = 128, kHigh = 64;
+  using Box = EndlessBox<128, 64>;
 
   struct Cell {
-    std::int32_t x = 0, y = 0, z = 0;
+    Box::Place place;
     bool is_used = false;
     bool is_fresh = false;  // the surfel is that of the sums
     bool is_plane = false;
@@ -48,11 +48,6 @@ private:
     float xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
     Surfel surfel;
   };
-  struct Place {
-    std::int32_t x, y, z;
-    std::size_t index;
-  };
-  Place place(const Eigen::Vector3f& point) const;
   Eigen::Vector3f middle(const Cell& cell) const;
   void fit(Cell& cell) const;
 

@@ -118,7 +118,7 @@ TEST(DeadReckoning, TakesWhatIsAssumedForASilentSensor) {
   const MotionStep step = follower.sweep(0.7);
   EXPECT_FALSE(step.knows_attitude || step.knows_distance);
   EXPECT_NEAR(step.distance, 0.2, 1e-9);
-  EXPECT_NEAR(step.turned, 0.05, 1e-9);
+  EXPECT_NEAR(step.turned(), 0.05, 1e-9);
   EXPECT_NEAR(yaw_of(step.attitude), 0.05, 1e-9);
   EXPECT_NEAR(step.moved.y(), 0.2 * 0.025, 1e-5);
 }
@@ -144,7 +144,7 @@ void expect_whole(Follower& follower, const SimpleDrive& drive, double end) {
     EXPECT_LT((place.rotation.cast<double>() - truth.rotation.toRotationMatrix()).norm(), 0.06)
         << before;
   }
-  EXPECT_NEAR(step.turned,
+  EXPECT_NEAR(step.turned(),
               drive.base(end - kSweep).rotation.angularDistance(drive.base(end).rotation), 0.06);
   const Eigen::Vector3d moved = step.begin_attitude.conjugate() * step.moved;
   const Pose truth = test::relative(drive.base(end - kSweep), drive.base(end));

@@ -23,7 +23,6 @@ MotionStep step_of(const Eigen::Quaterniond& from, const Eigen::Quaterniond& to,
   step.attitude = to;
   step.moved = from.slerp(0.5, to) * Eigen::Vector3d(way, 0, 0);
   step.distance = way;
-  step.turned = from.angularDistance(to);
   step.knows_attitude = step.knows_distance = true;
   return step;
 }

@@ -65,7 +65,7 @@ private:
   double cast(const Eigen::Vector3d& along) const { return cast(along, has_box); }
 
   inline static const Eigen::Vector3d kLidar{0, 0, 1};
-  RollingMap map_{RollingMapSettings{.max_voxels = 1 << 17}};
+  RollingMap map_{MapSettings{.max_voxels = 1 << 17}};
   DeskewedSweep sweep_{1 << 14};
   std::mt19937 random_{31};
   std::int64_t now_ns_ = 1'598'612'523'000'000'000;

@@ -27,7 +27,7 @@ Cell cell_of(const Eigen::Vector3d& place) {
 /// A map and its clock.
 class RollingMapTest : public testing::Test {
 protected:
-  RollingMapSettings settings_{.voxel = kVoxel, .reach = 12, .max_voxels = 1 << 16};
+  MapSettings settings_{.voxel = kVoxel, .reach = 12, .max_voxels = 1 << 16};
   RollingMap map_{settings_};
   DeskewedSweep sweep_{1 << 15};
   Pose pose_;
