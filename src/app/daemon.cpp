@@ -16,6 +16,7 @@
 #include "health_watch.hpp"
 #include "imu_reader.hpp"
 #include "lidar_reader.hpp"
+#include "output_lines.hpp"
 #include "scree/core/latency_histogram.hpp"
 #include "scree/publish/publisher.hpp"
 
@@ -53,8 +54,8 @@ latency_t summary(const LatencyHistogram& histogram) {
 
 class Threads final : public Daemon {
 public:
-  Threads(const Settings& settings, Process process, SyncBuffer* sensors, LidarPorts ports,
-          Publisher publisher)
+  Threads(const Settings& settings, Process process, SyncBuffer* sensors, const RobotLines& lines,
+          LidarPorts ports, Publisher publisher)
       : sweeps_(kSweeps, [] { return TimedSweep(); }),
         lists_(kLists, [&] { return FoundList(max_obstacles(settings)); }),
         reader_(settings.lidar, std::move(ports), sweeps_),
@@ -62,6 +63,7 @@ public:
         sensors_(sensors),
         wait_ns_(static_cast<std::int64_t>(settings.map.wait * 1e9)),
         publisher_(std::move(publisher)),
+        outputs_(settings.stop, lines),
         watch_(settings.lidar, steady_ns()) {
     health_.version = SCREE_VERSION;
     if (sensors_ != nullptr) {
@@ -156,13 +158,17 @@ private:
     }
     health_.state = health_t::BLIND;
     health_.reason = "screed was stopped";
-    report(steady_ns());
+    const std::int64_t now = steady_ns();
+    drive_outputs(now);
+    report(now);
   }
 
   void publish(FoundList& found) {
+    outputs_.see(found.list, steady_ns());
     found.list.stamp_ns = clock_.to_real(found.list.stamp_ns, read_clocks());
     if (publisher_.publish(found.list)) {
       ++health_.lists_published;
+      outputs_.beat();
     } else {
       ++health_.lists_failed;
     }
@@ -176,7 +182,8 @@ private:
 
   void look(std::int64_t now) {
     const LidarStatus& lidar = reader_.status();
-    const bool has_changed = watch_.update(now, lidar, last_list_ns_, health_);
+    bool has_changed = watch_.update(now, lidar, last_list_ns_, health_);
+    has_changed = drive_outputs(now) || has_changed;
     for (const auto& [is_warning, text] : watch_.log()) {
       spdlog::log(is_warning ? spdlog::level::warn : spdlog::level::info, text);
     }
@@ -184,6 +191,17 @@ private:
     health_.sweeps_dropped = static_cast<std::int64_t>(lidar.sweeps_dropped);
     health_.points_dropped = points_dropped_ + static_cast<std::int64_t>(lidar.lidar.dropped);
     if (has_changed || now - last_report_ns_ >= kReport) report(now);
+  }
+
+  /// True when what health says of them changed.
+  bool drive_outputs(std::int64_t now) {
+    outputs_.set_blind(health_.state == health_t::BLIND, now);
+    const bool has_stopped = outputs_.is_stopped(now);
+    const bool has_changed =
+        health_.stop != has_stopped || health_.lines_problem != outputs_.problem();
+    health_.stop = has_stopped ? 1 : 0;
+    health_.lines_problem = outputs_.problem();
+    return has_changed;
   }
 
   void report(std::int64_t now) {
@@ -214,6 +232,7 @@ private:
   // Of the publishing thread alone.
   Publisher publisher_;
   HostClock clock_;
+  OutputLines outputs_;
   HealthWatch watch_;
   health_t health_{};
   LatencyHistogram latency_, detector_time_;
@@ -226,7 +245,7 @@ private:
 }  // namespace
 
 Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings, Process process,
-                                              SyncBuffer* sensors) {
+                                              SyncBuffer* sensors, const RobotLines& lines) {
   auto ports = LidarPorts::open(settings.lidar);
   if (!ports) return tl::make_unexpected(ports.error());
   auto publisher = Publisher::open(settings.lcm.url, Threads::max_obstacles(settings));
@@ -235,7 +254,7 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings, Process 
                settings.lidar.address, ports->data.port(), ports->position.port(),
                settings.lidar.sender.empty() ? "any sender" : settings.lidar.sender);
   spdlog::info("publishing on {}", settings.lcm.url);
-  return std::make_unique<Threads>(settings, std::move(process), sensors, std::move(*ports),
+  return std::make_unique<Threads>(settings, std::move(process), sensors, lines, std::move(*ports),
                                    std::move(*publisher));
 }
 

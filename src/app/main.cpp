@@ -9,6 +9,7 @@
 #include "scree/app/daemon.hpp"
 #include "scree/app/pipeline.hpp"
 #include "scree/drivers/encoder/dbc.hpp"
+#include "scree/drivers/gpio/lines.hpp"
 
 namespace {
 
@@ -29,12 +30,23 @@ scree::Process process_of(scree::Pipeline& pipeline) {
   };
 }
 
+/// Valid as long as the lines are held.
+scree::RobotLines robot_lines(scree::gpio::Lines& held) {
+  const auto setter = [](std::optional<scree::gpio::Output>& line) -> scree::RobotLines::Set {
+    if (!line) return {};
+    return [&line](bool is_on) { return line->set(is_on); };
+  };
+  return {setter(held.stop), setter(held.heartbeat)};
+}
+
 int run(const std::filesystem::path& config) {
   auto settings = scree::load_settings(config);
   if (!settings) return failed(settings.error().message);
   const auto encoder = scree::encoder::with_dbc(settings->encoder, config.parent_path());
   if (!encoder) return failed(encoder.error().message);
   settings->encoder = *encoder;
+  auto lines = scree::gpio::Lines::open(settings->gpio);  // stop is on from here
+  if (!lines) return failed(lines.error().message);
   auto pipeline = scree::Pipeline::make(*settings, config.parent_path());
   if (!pipeline) return failed(pipeline.error().message);
 
@@ -43,7 +55,8 @@ int run(const std::filesystem::path& config) {
   sigaddset(&stop_signals, SIGTERM);
   sigaddset(&stop_signals, SIGINT);
   pthread_sigmask(SIG_BLOCK, &stop_signals, nullptr);
-  auto daemon = scree::Daemon::start(*settings, process_of(*pipeline), &pipeline->sensors());
+  auto daemon = scree::Daemon::start(*settings, process_of(*pipeline), &pipeline->sensors(),
+                                     robot_lines(*lines));
   if (!daemon) return failed(daemon.error().message);
 
   int signal = 0;

@@ -150,6 +150,12 @@ class DaemonTest(unittest.TestCase):
         result = self.run_to_end(SCREED, "--config", os.path.join(self.folder, "none.toml"))
         self.assert_fails(result, "none.toml")
 
+    def test_a_gpio_line_that_is_not_there_is_said(self):
+        with open(self.config, "a") as file:
+            file.write('[gpio]\nstop = "nochip:4"\n')
+        result = self.run_to_end(SCREED, "--config", self.config)
+        self.assert_fails(result, 'gpio.stop = "nochip:4"', "no GPIO chip nochip")
+
     def test_an_unusable_lcm_url_is_explained(self):
         config = self.write("wrong.toml", f'[lidar]\nport = {self.port}\nposition_port = '
                             f'{self.position_port}\n[detect.sweep]\nnetwork = "network.txt"\n'

@@ -76,6 +76,8 @@ void append_text(const health_t& health, std::string& text) {
                  health.lidar.sender.empty() ? "" : " from ", health.lidar.sender,
                  health.lidar.packet_rate, health.sweeps, health.lists_published,
                  health.latency.p50_ms, health.latency.p99_ms, health.latency.max_ms);
+  if (health.stop != 0) text += "              stop\n";
+  if (!health.lines_problem.empty()) text += "              " + health.lines_problem + '\n';
   append_counts(health, text);
 }
 

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 
+#include "scree/app/robot_lines.hpp"
 #include "scree/config/settings.hpp"
 #include "scree/core/obstacle.hpp"
 #include "scree/core/result.hpp"
@@ -34,9 +35,10 @@ public:
   /// @param sensors where samples of the motion go, its consumer the thread of Process; without it
   /// neither IMU nor encoder are read
   static Result<std::unique_ptr<Daemon>> start(const Settings& settings, Process process,
-                                               SyncBuffer* sensors = nullptr);
+                                               SyncBuffer* sensors = nullptr,
+                                               const RobotLines& lines = {});
 
-  /// Stops and joins the threads.
+  /// Stops and joins the threads. The stop line is left on.
   virtual ~Daemon() = default;
 };
 

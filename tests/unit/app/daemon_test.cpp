@@ -108,6 +108,7 @@ protected:
     sweep_age_ns_ = nanoseconds_of<Clock>() - sweep.end_ns;
     found_.obstacles.clear();
     Obstacle rock;
+    rock.center.x() = rock_x_;
     rock.points = static_cast<std::uint32_t>(sweep.points.size());
     found_.obstacles.push_back(rock);
     dropped = {1, 2, 3};
@@ -115,9 +116,11 @@ protected:
   }
   std::unique_ptr<Daemon> start() {
     auto daemon = Daemon::start(
-        settings_, [this](const Sweep& sweep, Dropped& dropped) -> const ObstacleList& {
+        settings_,
+        [this](const Sweep& sweep, Dropped& dropped) -> const ObstacleList& {
           return process(sweep, dropped);
-        });
+        },
+        nullptr, lines_);
     EXPECT_TRUE(daemon) << daemon.error().message;
     return std::move(*daemon);
   }
@@ -126,6 +129,8 @@ protected:
   std::optional<Listener> listener_;
   std::atomic<bool> is_stuck_ = false;
   std::atomic<std::int64_t> sweep_age_ns_ = 0;
+  std::atomic<double> rock_x_ = 100;
+  RobotLines lines_;
   ObstacleList found_{1};
 };
 
@@ -173,6 +178,48 @@ TEST_F(DaemonTest, ASlowDetectorLosesTheNewestSweepsAndTheyAreCounted) {
   EXPECT_EQ(listener_->health.sweeps_waiting, 2);
   is_stuck_ = false;
   EXPECT_TRUE(listener_->until([&] { return listener_->health.state == health_t::OK; }));
+}
+
+TEST_F(DaemonTest, TheLinesFollowWhatIsSeen) {
+  std::atomic<bool> is_stopped = false, cannot_stop = false;
+  std::atomic<int> beats = 0;
+  lines_.stop = [&](bool is_on) {
+    if (!cannot_stop) is_stopped = is_on;
+    return !cannot_stop;
+  };
+  lines_.heartbeat = [&](bool) {
+    ++beats;
+    return true;
+  };
+  settings_.stop.hold = 0.1;
+  auto daemon = start();
+  const auto says = [&](std::int8_t state, bool is_on) {
+    return listener_->until([&] {
+      const health_t& health = listener_->health;
+      return health.state == state && health.stop == (is_on ? 1 : 0) && is_stopped == is_on;
+    });
+  };
+  ASSERT_TRUE(says(health_t::BLIND, true));
+  {
+    const Lidar lidar(settings_.lidar.port);
+    ASSERT_TRUE(says(health_t::OK, false));
+    rock_x_ = 1;
+    ASSERT_TRUE(says(health_t::OK, true));
+    EXPECT_GT(beats, 0);
+    rock_x_ = 100;
+    ASSERT_TRUE(says(health_t::OK, false));
+    cannot_stop = true;
+  }
+  ASSERT_TRUE(listener_->until([&] { return !listener_->health.lines_problem.empty(); }));
+  EXPECT_THAT(listener_->health.lines_problem, HasSubstr("the stop line cannot be set"));
+  cannot_stop = false;
+  ASSERT_TRUE(listener_->until([&] { return listener_->health.lines_problem.empty(); }));
+  {
+    const Lidar lidar(settings_.lidar.port);
+    ASSERT_TRUE(says(health_t::OK, false));
+    daemon.reset();
+  }
+  EXPECT_TRUE(is_stopped) << "at the end";
 }
 
 TEST_F(DaemonTest, TheLastHealthSaysThatItWasStopped) {

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "scree/app/robot_lines.hpp"
+#include "scree/config/settings.hpp"
+#include "scree/core/obstacle.hpp"
+#include "scree/publish/stop_line.hpp"
+
+namespace scree {
+
+/// One output: set when its level changes, and again and again while that fails. Says both in the
+/// log, once.
+class OutputLine {
+public:
+  /// @param name for people; without `set` there is no such line
+  OutputLine(std::string name, RobotLines::Set set);
+
+  void set(bool is_on);
+  /// One sentence while it cannot be set, else empty.
+  const std::string& problem() const { return problem_; }
+
+private:
+  std::string name_;
+  RobotLines::Set set_;
+  std::optional<bool> level_;  // nothing: unknown
+  std::string problem_;
+};
+
+/// Drives the stop line, as StopLine decides, and the heartbeat. Times are of the steady clock. One
+/// thread may use it.
+class OutputLines {
+public:
+  OutputLines(const StopSettings& zone, const RobotLines& lines);
+
+  void see(const ObstacleList& list, std::int64_t now_ns);
+  void set_blind(bool is_blind, std::int64_t now_ns);
+  /// The heartbeat changes its level.
+  void beat();
+
+  bool is_stopped(std::int64_t now_ns) const { return decision_.is_on(now_ns); }
+  /// Of the stop line, else of the heartbeat; see OutputLine.
+  const std::string& problem() const;
+
+private:
+  StopLine decision_;
+  OutputLine stop_, heartbeat_;
+  bool beats_on_ = false;
+};
+
+}  // namespace scree

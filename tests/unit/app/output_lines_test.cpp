@@ -1,0 +1,102 @@
+#include "app/output_lines.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace scree {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+constexpr std::int64_t kMs = 1'000'000;
+constexpr StopSettings kZone{.length = 2, .width = 1, .hold = 0.5};
+
+/// A line that remembers what it was set to.
+struct Line {
+  std::vector<bool> levels;
+  int tries = 0;
+  bool is_gone = false;
+
+  RobotLines::Set setter() {
+    return [this](bool is_on) {
+      ++tries;
+      if (!is_gone) levels.push_back(is_on);
+      return !is_gone;
+    };
+  }
+};
+
+ObstacleList list_with_rock_at(double x) {
+  ObstacleList list(1);
+  Obstacle rock;
+  rock.center = {x, 0, 0.2};
+  rock.extent = {0.2, 0.2, 0.4};
+  list.obstacles.push_back(rock);
+  return list;
+}
+
+TEST(OutputLines, StopsForBlindnessAndForAnObstacleAtOnceAndHoldsBoth) {
+  Line stop;
+  OutputLines lines(kZone, {stop.setter(), {}});
+  EXPECT_TRUE(lines.is_stopped(0));
+  lines.set_blind(true, 0);
+  lines.set_blind(false, 10 * kMs);
+  lines.see(list_with_rock_at(9), 500 * kMs);
+  EXPECT_THAT(stop.levels, ElementsAre(true));
+  lines.set_blind(false, 510 * kMs);
+  EXPECT_THAT(stop.levels, ElementsAre(true, false));
+  lines.see(list_with_rock_at(1), 600 * kMs);
+  EXPECT_THAT(stop.levels, ElementsAre(true, false, true)) << "without waiting for a look";
+  lines.see(list_with_rock_at(9), 700 * kMs);
+  lines.set_blind(false, 1199 * kMs);
+  EXPECT_THAT(stop.levels, ElementsAre(true, false, true));
+  lines.set_blind(false, 1200 * kMs);
+  EXPECT_THAT(stop.levels, ElementsAre(true, false, true, false));
+  lines.set_blind(true, 1300 * kMs);
+  EXPECT_THAT(stop.levels, ElementsAre(true, false, true, false, true));
+  EXPECT_EQ(stop.tries, 5) << "it is not set to the level that it has";
+}
+
+TEST(OutputLines, HeartbeatChangesWithEachBeat) {
+  Line heartbeat;
+  OutputLines lines(kZone, {{}, heartbeat.setter()});
+  for (int i = 0; i < 4; ++i) lines.beat();
+  EXPECT_THAT(heartbeat.levels, ElementsAre(true, false, true, false));
+}
+
+TEST(OutputLines, ALineThatCannotBeSetIsSaidAndTriedUntilItCan) {
+  Line stop, heartbeat;
+  OutputLines lines(kZone, {stop.setter(), heartbeat.setter()});
+  lines.set_blind(true, 0);
+  EXPECT_EQ(lines.problem(), "");
+  heartbeat.is_gone = true;
+  lines.beat();
+  EXPECT_THAT(lines.problem(), HasSubstr("the heartbeat line cannot be set"));
+  stop.is_gone = true;
+  lines.set_blind(false, 0);
+  lines.set_blind(false, 600 * kMs);
+  EXPECT_THAT(lines.problem(), HasSubstr("the stop line cannot be set"));
+  lines.set_blind(true, 700 * kMs);
+  lines.set_blind(true, 800 * kMs);
+  EXPECT_EQ(stop.tries, 4);
+  stop.is_gone = heartbeat.is_gone = false;
+  lines.set_blind(true, 900 * kMs);
+  lines.beat();
+  EXPECT_EQ(lines.problem(), "");
+  EXPECT_THAT(stop.levels, ElementsAre(true, true));
+}
+
+TEST(OutputLines, WithoutLinesTheDecisionIsStillMade) {
+  OutputLines lines(kZone, {});
+  lines.set_blind(false, 0);
+  lines.see(list_with_rock_at(9), 0);
+  lines.beat();
+  EXPECT_FALSE(lines.is_stopped(501 * kMs));
+  EXPECT_EQ(lines.problem(), "");
+}
+
+}  // namespace
+}  // namespace scree
