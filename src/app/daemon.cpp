@@ -58,7 +58,7 @@ public:
           LidarPorts ports, Publisher publisher)
       : sweeps_(kSweeps, [] { return TimedSweep(); }),
         lists_(kLists, [&] { return FoundList(max_obstacles(settings)); }),
-        reader_(settings.lidar, std::move(ports), sweeps_),
+        reader_(settings.lidar, std::move(ports), lines.pps, sweeps_),
         process_(std::move(process)),
         sensors_(sensors),
         wait_ns_(static_cast<std::int64_t>(settings.map.wait * 1e9)),

@@ -75,6 +75,7 @@ bool HealthWatch::update(std::int64_t now_ns, const LidarStatus& lidar, std::int
 
   say_first_packets(lidar);
   say_silence(now_ns, lidar);
+  say_pulses(lidar);
   if (health.state != old_state)
     say(!sees, sees ? "sees: obstacle lists go out" : "blind: " + health.reason);
   for (std::size_t i = 1; i < velodyne::kRefusals; ++i) {
@@ -130,6 +131,17 @@ void HealthWatch::say_first_packets(const LidarStatus& lidar) {
   if (lidar.firmware != said_firmware_) {
     say(lidar.firmware == velodyne::Firmware::foreign, std::string(sentence(lidar.firmware)));
     said_firmware_ = lidar.firmware;
+  }
+}
+
+void HealthWatch::say_pulses(const LidarStatus& lidar) {
+  if (!said_pulse_ && lidar.pulses > 0) {
+    say(false, "the pulse per second of gpio.pps comes");
+    said_pulse_ = true;
+  }
+  if (!said_pps_lost_ && lidar.is_pps_lost) {
+    say(true, "the GPIO chip of gpio.pps is gone: plug it in again and restart screed");
+    said_pps_lost_ = true;
   }
 }
 

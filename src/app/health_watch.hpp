@@ -51,6 +51,7 @@ private:
   std::string blind_reason(const LidarStatus& lidar, std::int8_t state) const;
   void say(bool is_warning, std::string text) { log_.push_back({is_warning, std::move(text)}); }
   void say_first_packets(const LidarStatus& lidar);
+  void say_pulses(const LidarStatus& lidar);
   void say_silence(std::int64_t now_ns, const LidarStatus& lidar);
   void say_growth(std::int64_t now_ns, Growth& growth, std::uint64_t count,
                   const std::string& what);
@@ -61,6 +62,7 @@ private:
   std::vector<Line> log_;
   velodyne::Firmware said_firmware_ = velodyne::Firmware::undecided;
   bool said_datagram_ = false, said_packet_ = false, said_silence_ = false;
+  bool said_pulse_ = false, said_pps_lost_ = false;
   std::int64_t silent_since_ = 0;
   std::array<Growth, velodyne::kRefusals> refused_;
   Growth foreign_, kernel_drops_, sweeps_dropped_;

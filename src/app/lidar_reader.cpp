@@ -24,21 +24,31 @@ Result<LidarPorts> LidarPorts::open(const LidarSettings& settings) {
   return LidarPorts{std::move(*data), std::move(*position)};
 }
 
-LidarReader::LidarReader(const LidarSettings& settings, LidarPorts ports, SweepRing& sweeps)
+LidarReader::LidarReader(const LidarSettings& settings, LidarPorts ports, RobotLines::Pulses pps,
+                         SweepRing& sweeps)
     : ports_(std::move(ports)),
+      pps_(std::move(pps)),
       sweeps_(sweeps),
       stream_(settings, [this](Sweep& sweep) { hand_over(sweep); }) {}
 
 void LidarReader::run() {
   pollfd wait_for[] = {{ports_.data.descriptor(), POLLIN, 0},
                        {ports_.position.descriptor(), POLLIN, 0},
+                       {pps_.descriptor, POLLIN, 0},
                        {stop_.descriptor(), POLLIN, 0}};
   while (true) {
     if (poll(wait_for, std::size(wait_for), -1) < 0) continue;  // a signal came between
-    if (wait_for[2].revents != 0) return;
+    if (wait_for[3].revents != 0) return;
+    if ((wait_for[2].revents & POLLIN) != 0) {
+      read_pulses();
+    } else if (wait_for[2].revents != 0) {
+      wait_for[2].fd = -1;  // its chip is gone
+      status_.is_pps_lost = true;
+    }
     if (wait_for[0].revents != 0) read_data();
     if (wait_for[1].revents != 0) read_position();
     status_.data_port = ports_.data.counts();
+    status_.clock = stream_.clock_state();
     shared_status_.put(status_);
   }
 }
@@ -64,6 +74,13 @@ void LidarReader::read_position() {
     const auto datagram = ports_.position.receive(buffer_);
     if (!datagram) return;
     if (velodyne::parse_position_packet(datagram->bytes)) ++status_.position_packets;
+  }
+}
+
+void LidarReader::read_pulses() {
+  while (const auto pulse_ns = pps_.read()) {
+    stream_.pps(clock_.to_monotonic(*pulse_ns, read_clocks()));
+    ++status_.pulses;
   }
 }
 

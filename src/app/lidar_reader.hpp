@@ -7,6 +7,7 @@
 #include "hand_over.hpp"
 #include "latest.hpp"
 #include "lidar_status.hpp"
+#include "scree/app/robot_lines.hpp"
 #include "scree/config/settings.hpp"
 #include "scree/core/result.hpp"
 #include "scree/core/sweep.hpp"
@@ -29,11 +30,13 @@ struct LidarPorts {
   static Result<LidarPorts> open(const LidarSettings& settings);
 };
 
-/// Reads the lidar's two ports and hands over each complete sweep, on the monotonic clock. run() is
-/// the work of a thread; it allocates nothing and blocks only in poll().
+/// Reads the lidar's two ports, and the pulses that its clock is locked to, and hands over each
+/// complete sweep, on the monotonic clock. run() is the work of a thread; it allocates nothing and
+/// blocks only in poll().
 class LidarReader {
 public:
-  LidarReader(const LidarSettings& settings, LidarPorts ports, SweepRing& sweeps);
+  LidarReader(const LidarSettings& settings, LidarPorts ports, RobotLines::Pulses pps,
+              SweepRing& sweeps);
 
   /// Returns after stop() was called from another thread.
   void run();
@@ -45,9 +48,11 @@ public:
 private:
   void read_data();
   void read_position();
+  void read_pulses();
   void hand_over(Sweep& sweep);
 
   LidarPorts ports_;
+  RobotLines::Pulses pps_;
   SweepRing& sweeps_;
   HostClock clock_;
   velodyne::LidarStream stream_;

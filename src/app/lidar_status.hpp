@@ -20,6 +20,10 @@ struct LidarStatus {
   std::int64_t last_packet_ns = 0;  ///< of a data packet that was accepted
   std::uint64_t position_packets = 0;
 
+  std::uint64_t pulses = 0;  ///< of the pulse per second
+  bool is_pps_lost = false;  ///< its GPIO chip is gone
+  ClockState clock = ClockState::unsynchronised;
+
   std::uint64_t sweeps_dropped = 0;  ///< the ring to the detector was full
   bool is_last_sweep_empty = false;
 };

@@ -36,7 +36,11 @@ scree::RobotLines robot_lines(scree::gpio::Lines& held) {
     if (!line) return {};
     return [&line](bool is_on) { return line->set(is_on); };
   };
-  return {setter(held.stop), setter(held.heartbeat)};
+  scree::RobotLines lines{setter(held.stop), setter(held.heartbeat), {}};
+  if (held.pps) {
+    lines.pps = {held.pps->descriptor(), [&pps = *held.pps] { return pps.read(); }};
+  }
+  return lines;
 }
 
 int run(const std::filesystem::path& config) {

@@ -1,19 +1,15 @@
 #include "scree/app/daemon.hpp"
 
-#include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
 
 #include <atomic>
 #include <chrono>
 #include <thread>
 
-#include "scree/core/descriptor.hpp"
 #include "scree/publish/subscriber.hpp"
+#include "unit/app/sending_lidar.hpp"
 #include "unit/free_port.hpp"
-#include "unit/velodyne/packet_builder.hpp"
 
 namespace scree {
 namespace {
@@ -25,36 +21,6 @@ template <class AClock>
 std::int64_t nanoseconds_of() {
   return std::chrono::nanoseconds(AClock::now().time_since_epoch()).count();
 }
-
-/// A VLP-16 that turns 20 times a second, until it is destroyed.
-class Lidar {
-public:
-  explicit Lidar(int port)
-      : thread_([this, port](const std::stop_token& stop) { run(stop, port); }) {}
-
-private:
-  void run(const std::stop_token& stop, int port) {
-    constexpr int kStep = 80;  // hundredths of a degree between two blocks
-    const Descriptor socket(::socket(AF_INET, SOCK_DGRAM, 0));
-    sockaddr_in to{};
-    to.sin_family = AF_INET;
-    to.sin_port = htons(static_cast<std::uint16_t>(port));
-    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    velodyne::PacketBuilder packet;
-    packet.all_shots(2500, 40);
-    const auto start = Clock::now();
-    for (int i = 0; !stop.stop_requested(); ++i) {
-      const std::int64_t due_ns = std::int64_t{i} * velodyne::kPacketNs;
-      packet.timestamp(static_cast<std::uint32_t>(due_ns / 1000));
-      packet.turn(i * kStep * static_cast<int>(velodyne::kBlocks) % velodyne::kFullTurn, kStep);
-      std::this_thread::sleep_until(start + std::chrono::nanoseconds(due_ns));
-      sendto(socket.get(), packet.bytes().data(), packet.bytes().size(), 0,
-             reinterpret_cast<const sockaddr*>(&to), sizeof to);
-    }
-  }
-
-  std::jthread thread_;
-};
 
 /// What comes on LCM.
 class Listener {
@@ -141,7 +107,7 @@ TEST_F(DaemonTest, ListsAndHealthComeAndBlindnessIsSaid) {
   EXPECT_EQ(listener_->health.lidar.state, lidar_health_t::NEVER_SEEN);
   EXPECT_EQ(listener_->lists, 0);
   {
-    const Lidar lidar(settings_.lidar.port);
+    const SendingLidar lidar(settings_.lidar.port);
     ASSERT_TRUE(listener_->until([&] {
       return listener_->lists > 2 && listener_->health.state == health_t::OK &&
              listener_->health.lists_published > 2;
@@ -171,7 +137,7 @@ TEST_F(DaemonTest, ListsAndHealthComeAndBlindnessIsSaid) {
 TEST_F(DaemonTest, ASlowDetectorLosesTheNewestSweepsAndTheyAreCounted) {
   is_stuck_ = true;
   const auto daemon = start();
-  const Lidar lidar(settings_.lidar.port);
+  const SendingLidar lidar(settings_.lidar.port);
   EXPECT_TRUE(listener_->until([&] { return listener_->health.sweeps_dropped > 0; }));
   EXPECT_EQ(listener_->lists, 0);
   EXPECT_EQ(listener_->health.state, health_t::BLIND);
@@ -201,7 +167,7 @@ TEST_F(DaemonTest, TheLinesFollowWhatIsSeen) {
   };
   ASSERT_TRUE(says(health_t::BLIND, true));
   {
-    const Lidar lidar(settings_.lidar.port);
+    const SendingLidar lidar(settings_.lidar.port);
     ASSERT_TRUE(says(health_t::OK, false));
     rock_x_ = 1;
     ASSERT_TRUE(says(health_t::OK, true));
@@ -215,7 +181,7 @@ TEST_F(DaemonTest, TheLinesFollowWhatIsSeen) {
   cannot_stop = false;
   ASSERT_TRUE(listener_->until([&] { return listener_->health.lines_problem.empty(); }));
   {
-    const Lidar lidar(settings_.lidar.port);
+    const SendingLidar lidar(settings_.lidar.port);
     ASSERT_TRUE(says(health_t::OK, false));
     daemon.reset();
   }

@@ -131,6 +131,17 @@ TEST_F(HealthWatchTest, WhatProductByte0x21TurnsOutToBeIsSaidOnce) {
   EXPECT_THAT(drive(50), IsEmpty());
 }
 
+TEST_F(HealthWatchTest, PulsesAndTheirLossAreSaidOnce) {
+  drive(50);
+  status_.pulses = 1;
+  EXPECT_THAT(drive(50), HasSubstr("I the pulse per second of gpio.pps comes"));
+  status_.pulses = 2;
+  EXPECT_THAT(drive(50), IsEmpty());
+  status_.is_pps_lost = true;
+  EXPECT_THAT(drive(50), HasSubstr("W the GPIO chip of gpio.pps is gone"));
+  EXPECT_THAT(drive(50), IsEmpty());
+}
+
 TEST_F(HealthWatchTest, RefusalsAreSaidAtMostEveryTenSeconds) {
   auto& refused = status_.lidar.refused[static_cast<std::size_t>(velodyne::Refusal::flags)];
   drive(50);

@@ -40,7 +40,7 @@ ObstacleList list_with_rock_at(double x) {
 
 TEST(OutputLines, StopsForBlindnessAndForAnObstacleAtOnceAndHoldsBoth) {
   Line stop;
-  OutputLines lines(kZone, {stop.setter(), {}});
+  OutputLines lines(kZone, {stop.setter(), {}, {}});
   EXPECT_TRUE(lines.is_stopped(0));
   lines.set_blind(true, 0);
   lines.set_blind(false, 10 * kMs);
@@ -62,14 +62,14 @@ TEST(OutputLines, StopsForBlindnessAndForAnObstacleAtOnceAndHoldsBoth) {
 
 TEST(OutputLines, HeartbeatChangesWithEachBeat) {
   Line heartbeat;
-  OutputLines lines(kZone, {{}, heartbeat.setter()});
+  OutputLines lines(kZone, {{}, heartbeat.setter(), {}});
   for (int i = 0; i < 4; ++i) lines.beat();
   EXPECT_THAT(heartbeat.levels, ElementsAre(true, false, true, false));
 }
 
 TEST(OutputLines, ALineThatCannotBeSetIsSaidAndTriedUntilItCan) {
   Line stop, heartbeat;
-  OutputLines lines(kZone, {stop.setter(), heartbeat.setter()});
+  OutputLines lines(kZone, {stop.setter(), heartbeat.setter(), {}});
   lines.set_blind(true, 0);
   EXPECT_EQ(lines.problem(), "");
   heartbeat.is_gone = true;
