@@ -64,7 +64,7 @@ public:
         wait_ns_(static_cast<std::int64_t>(settings.map.wait * 1e9)),
         publisher_(std::move(publisher)),
         outputs_(settings.stop, lines),
-        watch_(settings.lidar, steady_ns()) {
+        watch_(settings, steady_ns()) {
     health_.version = SCREE_VERSION;
     if (sensors_ != nullptr) {
       imu_.emplace(settings.imu, *sensors_);
@@ -174,23 +174,33 @@ private:
     }
     latency_.record(steady_ns() - found.arrival_ns);
     detector_time_.record(found.detector_ns);
-    health_.edge_points_dropped += static_cast<std::int64_t>(found.dropped.edge_points);
-    health_.obstacles_dropped += static_cast<std::int64_t>(found.dropped.obstacles);
-    points_dropped_ += static_cast<std::int64_t>(found.dropped.points);
+    dropped_ = found.dropped;
     last_list_ns_ = steady_ns();
   }
 
   void look(std::int64_t now) {
     const LidarStatus& lidar = reader_.status();
-    bool has_changed = watch_.update(now, lidar, last_list_ns_, health_);
+    bool has_changed =
+        watch_.update(now, lidar, imu_ ? imu_->status() : ImuStatus(),
+                      encoder_ ? encoder_->status() : EncoderStatus(), last_list_ns_, health_);
     has_changed = drive_outputs(now) || has_changed;
     for (const auto& [is_warning, text] : watch_.log()) {
       spdlog::log(is_warning ? spdlog::level::warn : spdlog::level::info, text);
     }
     health_.sweeps = static_cast<std::int64_t>(lidar.lidar.sweeps);
     health_.sweeps_dropped = static_cast<std::int64_t>(lidar.sweeps_dropped);
-    health_.points_dropped = points_dropped_ + static_cast<std::int64_t>(lidar.lidar.dropped);
+    fill_dropped(lidar);
     if (has_changed || now - last_report_ns_ >= kReport) report(now);
+  }
+
+  void fill_dropped(const LidarStatus& lidar) {
+    const auto count = [](std::uint64_t value) { return static_cast<std::int64_t>(value); };
+    health_.points_dropped = count(lidar.lidar.dropped + dropped_.points);
+    health_.edge_points_dropped = count(dropped_.edge_points);
+    health_.obstacles_dropped = count(dropped_.obstacles);
+    health_.map_points_dropped = count(dropped_.map_points);
+    health_.tracks_dropped = count(dropped_.tracks);
+    if (sensors_ != nullptr) health_.samples_dropped = count(sensors_->dropped());
   }
 
   /// True when what health says of them changed.
@@ -205,16 +215,12 @@ private:
   }
 
   void report(std::int64_t now) {
-    const double seconds = static_cast<double>(now - last_report_ns_) / 1e9;
     health_.stamp_ns = wall_ns();
-    health_.lidar.packet_rate =
-        static_cast<double>(health_.lidar.packets - reported_packets_) / seconds;
     health_.sweeps_waiting = static_cast<std::int32_t>(sweeps_.waiting());
     health_.lists_dropped = lists_dropped_.load(std::memory_order_relaxed);
     health_.latency = summary(latency_);
     health_.detector_time = summary(detector_time_);
     if (!publisher_.publish(health_)) spdlog::warn("LCM does not take the health message");
-    reported_packets_ = health_.lidar.packets;
     last_report_ns_ = now;
   }
 
@@ -237,7 +243,7 @@ private:
   health_t health_{};
   LatencyHistogram latency_, detector_time_;
   std::int64_t last_list_ns_ = 0, last_report_ns_ = steady_ns();
-  std::int64_t points_dropped_ = 0, reported_packets_ = 0;
+  Dropped dropped_;
 
   std::thread reading_, reading_imu_, reading_encoder_, detecting_, publishing_;
 };

@@ -35,21 +35,35 @@ void EncoderReader::open() {
   if (opened) {
     socket_.emplace(std::move(*opened));
     spdlog::info("encoder: listening on {}", settings_.interface);
-  } else if (opened.error().message != said_) {
-    said_ = opened.error().message;
-    spdlog::warn("encoder: {}", said_);
+    return;
   }
+  status_.bus = encoder::BusState::absent;
+  shared_status_.put(status_);
+  if (opened.error().message == said_) return;
+  said_ = opened.error().message;
+  spdlog::warn("encoder: {}", said_);
 }
 
 void EncoderReader::read() {
   while (auto frame = socket_->receive()) {
     frame->t_ns = clock_.to_monotonic(frame->t_ns, read_clocks());
     stream_.take(*frame);
+    if (!frame->is_error) status_.last_frame_ns = steady_ns();
+    if (stream_.counters().accepted != status_.encoder.accepted) {
+      status_.last_sample_ns = status_.last_frame_ns;
+    }
+    status_.encoder = stream_.counters();
   }
   socket_->retry(steady_ns());
-  if (socket_->state() == state_) return;
-  state_ = socket_->state();
-  const auto index = static_cast<std::size_t>(state_);
+  status_.socket = socket_->counts();
+  say_bus(socket_->state());
+  shared_status_.put(status_);
+}
+
+void EncoderReader::say_bus(encoder::BusState state) {
+  if (state == status_.bus) return;
+  status_.bus = state;
+  const auto index = static_cast<std::size_t>(state);
   const std::string_view advice = encoder::kBusStateAdvice[index];
   spdlog::log(advice.empty() ? spdlog::level::info : spdlog::level::warn, "encoder: bus {}{}{}",
               encoder::kBusStateNames[index], advice.empty() ? "" : ", ", advice);

@@ -4,11 +4,13 @@
 #include <string>
 
 #include "event.hpp"
+#include "latest.hpp"
 #include "scree/config/settings.hpp"
 #include "scree/drivers/encoder/can_socket.hpp"
 #include "scree/drivers/encoder/encoder_stream.hpp"
 #include "scree/sync/host_clock.hpp"
 #include "scree/sync/sync_buffer.hpp"
+#include "sensor_status.hpp"
 
 namespace scree {
 
@@ -25,15 +27,20 @@ public:
   void run();
   void stop() { stop_.wake(); }
 
+  /// For one other thread: what was seen so far.
+  const EncoderStatus& status() { return shared_status_.get(); }
+
 private:
   void open();
   void read();
+  void say_bus(encoder::BusState state);
 
   EncoderSettings settings_;
   std::optional<encoder::CanSocket> socket_;
   encoder::EncoderStream stream_;
   HostClock clock_;
-  encoder::BusState state_ = encoder::BusState::silent;
+  EncoderStatus status_;
+  Latest<EncoderStatus> shared_status_;
   std::string said_;
   Event stop_;
 };

@@ -2,18 +2,13 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include <algorithm>
 #include <array>
 
 #include "scree/core/ipv4.hpp"
+#include "scree/sync/sync_buffer.hpp"
 
 namespace scree {
 namespace {
-
-constexpr std::int64_t kSecond = 1'000'000'000;
-constexpr std::int64_t kGrowthPause = 10 * kSecond;
-constexpr const char* kAdvice =
-    "check the sensor's power and cable, the destination address on its web page, and the firewall";
 
 /// The modes in which packets came, for the log.
 std::string modes_of(const velodyne::LidarCounters& counters) {
@@ -25,90 +20,121 @@ std::string modes_of(const velodyne::LidarCounters& counters) {
   return modes;
 }
 
-/// Why most datagrams were refused.
-std::string_view main_reason(const velodyne::LidarCounters& counters) {
-  const auto most = std::max_element(counters.refused.begin(), counters.refused.end());
-  return velodyne::kRefusalReasons[static_cast<std::size_t>(most - counters.refused.begin())];
-}
-
-std::int64_t signed_count(std::uint64_t count) {
-  return static_cast<std::int64_t>(count);
-}
-
-void fill(const LidarStatus& lidar, lidar_health_t& health) {
-  health.sender = lidar.sender == 0 ? "" : ipv4_text(lidar.sender);
-  health.packets = signed_count(lidar.lidar.accepted);
-  health.position_packets = signed_count(lidar.position_packets);
-  health.lost_packets = signed_count(lidar.lidar.lost);
-  health.kernel_drops = signed_count(lidar.data_port.kernel_drops);
-  health.refused_reason.clear();
-  health.refused.clear();
-  const auto add = [&](std::string_view reason, std::uint64_t count) {
-    health.refused_reason.emplace_back(reason);
-    health.refused.push_back(signed_count(count));
-  };
-  for (std::size_t i = 1; i < velodyne::kRefusals; ++i) {
-    add(velodyne::kRefusalNames[i], lidar.lidar.refused[i]);
+/// Adds what a decoder has refused, but for [none].
+template <class Names, class Reasons, class Counts>
+void add_refused(const Names& names, const Reasons& reasons, const Counts& counts,
+                 SensorStatus& status) {
+  for (std::size_t i = 1; i < names.size(); ++i) {
+    status.refused.push_back({names[i], std::string(reasons[i]), counts[i]});
   }
-  add("sender", lidar.data_port.foreign);
-  health.reasons = static_cast<std::int32_t>(health.refused.size());
 }
 
 }  // namespace
 
-HealthWatch::HealthWatch(const LidarSettings& settings, std::int64_t now_ns)
+HealthWatch::HealthWatch(const Settings& settings, std::int64_t now_ns)
     : settings_(settings),
-      port_(fmt::format("UDP port {}", settings.port)),
-      start_ns_(now_ns),
-      silent_since_(now_ns) {}
+      port_(fmt::format("UDP port {}", settings.lidar.port)),
+      lidar_({"packets on " + port_,
+              "check the sensor's power and cable, the destination address on its web page, and "
+              "the firewall"},
+             now_ns),
+      imu_({"messages from the IMU on " + settings.imu.device,
+            "check its cable and power, imu.device and imu.baud",
+            settings.imu.configure ? static_cast<double>(settings.imu.rate) : 0},
+           now_ns),
+      // Frames that are further apart say nothing of the motion between them.
+      encoder_({"frames of the encoder on " + settings.encoder.interface,
+                "check the encoder's power, the bus and its bit rate, and encoder.can_id",
+                1e9 / static_cast<double>(SyncBuffer::kSilenceNs)},
+               now_ns) {}
 
-bool HealthWatch::update(std::int64_t now_ns, const LidarStatus& lidar, std::int64_t last_list_ns,
+bool HealthWatch::update(std::int64_t now_ns, const LidarStatus& lidar, const ImuStatus& imu,
+                         const EncoderStatus& encoder, std::int64_t last_list_ns,
                          health_t& health) {
   log_.clear();
-  const std::int8_t old_lidar = health.lidar.state, old_state = health.state;
-  fill(lidar, health.lidar);
-  health.lidar.state = lidar_state(now_ns, lidar);
+  const std::int8_t before = health.state;
+  say_first_packets(lidar);
+  say_pulses(lidar);
+  const bool has_changed = update_sensors(now_ns, lidar, imu, encoder, health);
+
+  const bool has_packets =
+      health.lidar.state == sensor_health_t::OK || health.lidar.state == sensor_health_t::SLOW;
   const bool has_lists = last_list_ns != 0 && now_ns - last_list_ns <= kListsStop;
-  const bool sees = health.lidar.state == lidar_health_t::OK && has_lists;
+  const bool sees = has_packets && has_lists;
   health.state = sees ? health_t::OK : health_t::BLIND;
   health.reason = sees ? "" : blind_reason(lidar, health.lidar.state);
-
-  say_first_packets(lidar);
-  say_silence(now_ns, lidar);
-  say_pulses(lidar);
-  if (health.state != old_state)
+  if (health.state != before)
     say(!sees, sees ? "sees: obstacle lists go out" : "blind: " + health.reason);
-  for (std::size_t i = 1; i < velodyne::kRefusals; ++i) {
-    say_growth(now_ns, refused_[i], lidar.lidar.refused[i],
-               fmt::format("datagrams on {} refused: {}", port_, velodyne::kRefusalReasons[i]));
-  }
-  say_growth(now_ns, foreign_, lidar.data_port.foreign,
-             fmt::format("datagrams on {} refused: not from {}", port_, settings_.sender));
-  say_growth(now_ns, kernel_drops_, lidar.data_port.kernel_drops,
-             fmt::format("datagrams on {} dropped by the kernel: the reader was too slow", port_));
-  say_growth(now_ns, sweeps_dropped_, lidar.sweeps_dropped,
-             "sweeps dropped: the detector was too slow");
-  return health.state != old_state || health.lidar.state != old_lidar;
+  sweeps_dropped_.say(now_ns, lidar.sweeps_dropped, "sweeps dropped: the detector was too slow",
+                      log_);
+  return has_changed || health.state != before;
 }
 
-std::int8_t HealthWatch::lidar_state(std::int64_t now_ns, const LidarStatus& lidar) const {
-  if (lidar.last_datagram_ns == 0) return lidar_health_t::NEVER_SEEN;
-  if (now_ns - lidar.last_datagram_ns > kSilence) return lidar_health_t::SILENT;
-  const bool is_understood = lidar.last_packet_ns != 0 && now_ns - lidar.last_packet_ns <= kSilence;
-  return is_understood ? lidar_health_t::OK : lidar_health_t::WRONG_DATA;
+bool HealthWatch::update_sensors(std::int64_t now_ns, const LidarStatus& lidar,
+                                 const ImuStatus& imu, const EncoderStatus& encoder,
+                                 health_t& health) {
+  bool has_changed = lidar_.update(now_ns, status_of(lidar), health.lidar, log_);
+  has_changed |= imu_.update(now_ns, status_of(imu), health.imu, log_);
+  has_changed |= encoder_.update(now_ns, status_of(encoder), health.encoder, log_);
+  const std::string_view bus = encoder::kBusStateNames[static_cast<std::size_t>(encoder.bus)];
+  has_changed |= health.encoder_bus != bus;
+  health.encoder_bus = bus;
+  health.position_packets = static_cast<std::int64_t>(lidar.position_packets);
+  return has_changed;
+}
+
+SensorStatus HealthWatch::status_of(const LidarStatus& lidar) const {
+  SensorStatus status;
+  status.source = lidar.sender == 0 ? "" : ipv4_text(lidar.sender);
+  status.last_heard_ns = lidar.last_datagram_ns;
+  status.last_message_ns = lidar.last_packet_ns;
+  status.messages = lidar.lidar.accepted;
+  status.lost = lidar.lidar.lost;
+  status.kernel_drops = lidar.data_port.kernel_drops;
+  add_refused(velodyne::kRefusalNames, velodyne::kRefusalReasons, lidar.lidar.refused, status);
+  status.refused.push_back(
+      {"sender", "not from " + settings_.lidar.sender, lidar.data_port.foreign});
+  status.clock = lidar.clock;
+  return status;
+}
+
+SensorStatus HealthWatch::status_of(const ImuStatus& imu) const {
+  SensorStatus status;
+  status.source = settings_.imu.device;
+  status.last_heard_ns = imu.last_bytes_ns;
+  status.last_message_ns = imu.last_message_ns;
+  status.messages = imu.imu.accepted;
+  status.lost = imu.imu.lost;
+  add_refused(xsens::kRefusalNames, xsens::kRefusalReasons, imu.imu.refused, status);
+  status.refused.push_back(
+      {"stray_bytes", "bytes that belong to no message", imu.imu.bytes_skipped});
+  status.clock = imu.clock;
+  return status;
+}
+
+SensorStatus HealthWatch::status_of(const EncoderStatus& encoder) const {
+  SensorStatus status;
+  status.source = settings_.encoder.interface;
+  status.last_heard_ns = encoder.last_frame_ns;
+  status.last_message_ns = encoder.last_sample_ns;
+  status.messages = encoder.encoder.accepted;
+  status.kernel_drops = encoder.socket.kernel_drops;
+  add_refused(encoder::kRefusalNames, encoder::kRefusalReasons, encoder.encoder.refused, status);
+  status.refused.push_back({"malformed", "no frames of the kernel", encoder.socket.malformed});
+  return status;
 }
 
 std::string HealthWatch::blind_reason(const LidarStatus& lidar, std::int8_t state) const {
   switch (state) {
-    case lidar_health_t::NEVER_SEEN:
-      return lidar.data_port.foreign == 0
-                 ? fmt::format("nothing has come on {}", port_)
-                 : fmt::format("datagrams on {} come from others than {}", port_, settings_.sender);
-    case lidar_health_t::SILENT:
+    case sensor_health_t::NEVER_SEEN:
+      return lidar.data_port.foreign == 0 ? fmt::format("nothing has come on {}", port_)
+                                          : fmt::format("datagrams on {} come from others than {}",
+                                                        port_, settings_.lidar.sender);
+    case sensor_health_t::SILENT:
       return fmt::format("no packets on {}", port_);
-    case lidar_health_t::WRONG_DATA:
+    case sensor_health_t::WRONG_DATA:
       return fmt::format("datagrams on {} are not packets of a {}: {}", port_,
-                         name_of(settings_.model), main_reason(lidar.lidar));
+                         name_of(settings_.lidar.model), status_of(lidar).main_reason());
     default:
       break;
   }
@@ -124,8 +150,7 @@ void HealthWatch::say_first_packets(const LidarStatus& lidar) {
     said_datagram_ = true;
   }
   if (!said_packet_ && lidar.last_packet_ns != 0) {
-    say(false, fmt::format("packets are understood: {}, {}", name_of(settings_.model),
-                           modes_of(lidar.lidar)));
+    say(false, fmt::format("lidar: {}, {}", name_of(settings_.lidar.model), modes_of(lidar.lidar)));
     said_packet_ = true;
   }
   if (lidar.firmware != said_firmware_) {
@@ -143,30 +168,6 @@ void HealthWatch::say_pulses(const LidarStatus& lidar) {
     say(true, "the GPIO chip of gpio.pps is gone: plug it in again and restart screed");
     said_pps_lost_ = true;
   }
-}
-
-void HealthWatch::say_silence(std::int64_t now_ns, const LidarStatus& lidar) {
-  const std::int64_t last = lidar.last_datagram_ns == 0 ? start_ns_ : lidar.last_datagram_ns;
-  if (!said_silence_ && now_ns - last >= kSecond) {
-    say(true, fmt::format("{} on {} for 1 s: {}",
-                          lidar.last_datagram_ns == 0 ? "nothing has come" : "no packets", port_,
-                          kAdvice));
-    said_silence_ = true;
-    silent_since_ = last;
-  } else if (said_silence_ && now_ns - last < kSilence) {
-    if (silent_since_ != start_ns_) {  // else they are the first, which is said already
-      say(false, fmt::format("packets on {} again after {:.1f} s", port_,
-                             static_cast<double>(last - silent_since_) / kSecond));
-    }
-    said_silence_ = false;
-  }
-}
-
-void HealthWatch::say_growth(std::int64_t now_ns, Growth& growth, std::uint64_t count,
-                             const std::string& what) {
-  if (count == growth.said || (growth.said != 0 && now_ns - growth.said_at < kGrowthPause)) return;
-  say(true, fmt::format("{} ({} more, {} since the start)", what, count - growth.said, count));
-  growth = {count, now_ns};
 }
 
 }  // namespace scree

@@ -49,7 +49,14 @@ void ImuReader::open() {
 void ImuReader::read() {
   while (const auto received = device_->advance(steady_ns())) {
     stream_.take(received->bytes, clock_.to_monotonic(received->arrival_ns, read_clocks()));
+    status_.last_bytes_ns = steady_ns();
+    if (stream_.counters().accepted != status_.imu.accepted) {
+      status_.last_message_ns = status_.last_bytes_ns;
+    }
+    status_.imu = stream_.counters();
   }
+  status_.clock = stream_.clock().status(wall_ns() - steady_ns());
+  shared_status_.put(status_);
   const bool measures = device_->state() == xsens::DeviceState::measuring;
   if (measures && !measures_) {
     spdlog::info("IMU: measuring on {}", settings_.device);

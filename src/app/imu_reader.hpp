@@ -4,11 +4,13 @@
 #include <string>
 
 #include "event.hpp"
+#include "latest.hpp"
 #include "scree/config/settings.hpp"
 #include "scree/drivers/xsens/device.hpp"
 #include "scree/drivers/xsens/imu_stream.hpp"
 #include "scree/sync/host_clock.hpp"
 #include "scree/sync/sync_buffer.hpp"
+#include "sensor_status.hpp"
 
 namespace scree {
 
@@ -24,6 +26,9 @@ public:
   void run();
   void stop() { stop_.wake(); }
 
+  /// For one other thread: what was seen so far.
+  const ImuStatus& status() { return shared_status_.get(); }
+
 private:
   void open();
   void read();
@@ -33,6 +38,8 @@ private:
   std::optional<xsens::Device> device_;
   xsens::ImuStream stream_;
   HostClock clock_;
+  ImuStatus status_;
+  Latest<ImuStatus> shared_status_;
   bool measures_ = false;
   std::string said_;
   Event stop_;

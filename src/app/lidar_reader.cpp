@@ -48,7 +48,7 @@ void LidarReader::run() {
     if (wait_for[0].revents != 0) read_data();
     if (wait_for[1].revents != 0) read_position();
     status_.data_port = ports_.data.counts();
-    status_.clock = stream_.clock_state();
+    status_.clock = stream_.clock().status(wall_ns() - steady_ns());
     shared_status_.put(status_);
   }
 }

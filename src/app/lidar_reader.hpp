@@ -6,7 +6,6 @@
 #include "event.hpp"
 #include "hand_over.hpp"
 #include "latest.hpp"
-#include "lidar_status.hpp"
 #include "scree/app/robot_lines.hpp"
 #include "scree/config/settings.hpp"
 #include "scree/core/result.hpp"
@@ -14,6 +13,7 @@
 #include "scree/drivers/velodyne/lidar_stream.hpp"
 #include "scree/drivers/velodyne/udp_receiver.hpp"
 #include "scree/sync/host_clock.hpp"
+#include "sensor_status.hpp"
 
 namespace scree {
 

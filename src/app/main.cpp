@@ -21,11 +21,17 @@ int failed(const std::string& reason) {
 }
 
 scree::Process process_of(scree::Pipeline& pipeline) {
-  return [&pipeline](const scree::Sweep& sweep,
-                     scree::Dropped& dropped) -> const scree::ObstacleList& {
+  return [&pipeline, all = scree::Dropped()](
+             const scree::Sweep& sweep,
+             scree::Dropped& dropped) mutable -> const scree::ObstacleList& {
     const scree::ObstacleList& list = pipeline.process(sweep);
     const scree::StageCounts counts = pipeline.counts();
-    dropped = {counts.dropped, counts.edges_dropped, counts.obstacles_dropped};
+    all.points += counts.dropped;
+    all.edge_points += counts.edges_dropped;
+    all.obstacles += counts.obstacles_dropped;
+    all.map_points = pipeline.mapper().map().dropped();
+    all.tracks = pipeline.tracker().dropped();
+    dropped = all;
     return list;
   };
 }

@@ -216,8 +216,9 @@ std::int64_t DeviceClock::accuracy_ns() const {
   return behind + std::max(envelope_.accuracy_ns(), is_new ? kLate : 0);
 }
 
-std::int64_t DeviceClock::offset_ns() const {
-  return wrapped(anchor_host_ns_ - anchor_device_ns_);
+ClockStatus DeviceClock::status(std::int64_t ahead_ns) const {
+  if (!started_) return {};
+  return {state_, wrapped(anchor_host_ns_ + ahead_ns - anchor_device_ns_), accuracy_ns()};
 }
 
 }  // namespace scree

@@ -134,7 +134,7 @@ class DaemonTest(unittest.TestCase):
 
     def test_no_sender_is_said(self):
         daemon = self.start_daemon()
-        self.assertIn(f"UDP port {self.port}", self.read_until(daemon.stderr, "nothing has come"))
+        self.assertIn(f"UDP port {self.port}", self.read_until(daemon.stderr, "no packets on"))
         result = self.run_to_end(*self.watch("--json", "--seconds", "1.5"))
         self.assert_fails(result, "no obstacle list")
 

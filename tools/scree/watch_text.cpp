@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <array>
 #include <cmath>
 #include <iterator>
 
@@ -16,38 +17,59 @@ std::string time_of_day(std::int64_t stamp_ns) {
                      in_day % kSecond / 1'000'000);
 }
 
-const char* lidar_state(std::int8_t state) {
-  switch (state) {
-    case lidar_health_t::NEVER_SEEN:
-      return "never seen";
-    case lidar_health_t::OK:
-      return "ok";
-    case lidar_health_t::SILENT:
-      return "silent";
-    case lidar_health_t::WRONG_DATA:
-      return "wrong data";
-    default:
-      return "in an unknown state";
-  }
+const char* state_name(std::int8_t state) {
+  constexpr std::array kNames = {"never seen", "ok", "silent", "wrong data", "slow"};
+  const auto index = static_cast<std::size_t>(state);
+  return index < kNames.size() ? kNames[index] : "in an unknown state";
 }
 
-void append_counts(const health_t& health, std::string& text) {
-  std::string counts;
-  const auto add = [&](const std::string& what, std::int64_t count) {
-    if (count != 0) counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", what, count);
-  };
-  add("packets lost", health.lidar.lost_packets);
-  add("dropped by the kernel", health.lidar.kernel_drops);
-  for (std::size_t i = 0; i < health.lidar.refused.size(); ++i) {
-    add("refused for " + health.lidar.refused_reason[i], health.lidar.refused[i]);
+/// Counts that are not 0, as "lost 3, refused for size 7".
+class Counts {
+public:
+  void add(const std::string& what, std::int64_t count) {
+    if (count != 0) text_ += fmt::format("{}{} {}", text_.empty() ? "" : ", ", what, count);
   }
-  add("sweeps dropped", health.sweeps_dropped);
-  add("lists failed", health.lists_failed);
-  add("lists dropped", health.lists_dropped);
-  add("points dropped", health.points_dropped);
-  add("edge points dropped", health.edge_points_dropped);
-  add("obstacles dropped", health.obstacles_dropped);
-  if (!counts.empty()) text += fmt::format("              {}\n", counts);
+  const std::string& text() const { return text_; }
+
+private:
+  std::string text_;
+};
+
+std::string clock_text(const sensor_health_t& sensor) {
+  if (sensor.clock == sensor_health_t::UNSYNCHRONISED) return "clock unsynchronised";
+  const char* how = sensor.clock == sensor_health_t::PPS_LOCKED ? "PPS-locked" : "estimated";
+  return fmt::format("clock {} to {:.3f} ms", how, sensor.clock_accuracy_ms);
+}
+
+void append_sensor(const char* name, const sensor_health_t& sensor, const std::string& note,
+                   std::string& text) {
+  text += fmt::format("              {} {}", name, state_name(sensor.state));
+  if (!sensor.source.empty()) text += " (" + sensor.source + note + ")";
+  if (sensor.messages > 0) {
+    text += fmt::format(", {:.0f} of {:.0f}/s, {}", sensor.rate, sensor.expected_rate,
+                        clock_text(sensor));
+  }
+  Counts counts;
+  counts.add("lost", sensor.lost);
+  counts.add("dropped by the kernel", sensor.kernel_drops);
+  for (std::size_t i = 0; i < sensor.refused.size(); ++i) {
+    counts.add("refused for " + sensor.refused_reason[i], sensor.refused[i]);
+  }
+  text += (counts.text().empty() ? "" : "; " + counts.text()) + '\n';
+}
+
+void append_dropped(const health_t& health, std::string& text) {
+  Counts counts;
+  counts.add("sweeps dropped", health.sweeps_dropped);
+  counts.add("lists failed", health.lists_failed);
+  counts.add("lists dropped", health.lists_dropped);
+  counts.add("points dropped", health.points_dropped);
+  counts.add("edge points dropped", health.edge_points_dropped);
+  counts.add("obstacles dropped", health.obstacles_dropped);
+  counts.add("map points dropped", health.map_points_dropped);
+  counts.add("tracks dropped", health.tracks_dropped);
+  counts.add("samples dropped", health.samples_dropped);
+  if (!counts.text().empty()) text += "              " + counts.text() + '\n';
 }
 
 }  // namespace
@@ -69,16 +91,16 @@ void append_text(const ObstacleList& list, std::string& text) {
 void append_text(const health_t& health, std::string& text) {
   const std::string state =
       health.state == health_t::OK ? std::string("ok") : "BLIND (" + health.reason + ")";
-  fmt::format_to(std::back_inserter(text),
-                 "{}  health {}: lidar {}{}{}, {:.0f} packets/s, {} sweeps, {} lists, latency p50 "
-                 "{:.1f} p99 {:.1f} max {:.1f} ms\n",
-                 time_of_day(health.stamp_ns), state, lidar_state(health.lidar.state),
-                 health.lidar.sender.empty() ? "" : " from ", health.lidar.sender,
-                 health.lidar.packet_rate, health.sweeps, health.lists_published,
-                 health.latency.p50_ms, health.latency.p99_ms, health.latency.max_ms);
-  if (health.stop != 0) text += "              stop\n";
+  fmt::format_to(
+      std::back_inserter(text),
+      "{}  health {}{}: {} sweeps, {} lists, latency p50 {:.1f} p99 {:.1f} max {:.1f} ms\n",
+      time_of_day(health.stamp_ns), state, health.stop != 0 ? ", stop" : "", health.sweeps,
+      health.lists_published, health.latency.p50_ms, health.latency.p99_ms, health.latency.max_ms);
+  append_sensor("lidar", health.lidar, "", text);
+  append_sensor("imu", health.imu, "", text);
+  append_sensor("encoder", health.encoder, ", bus " + health.encoder_bus, text);
   if (!health.lines_problem.empty()) text += "              " + health.lines_problem + '\n';
-  append_counts(health, text);
+  append_dropped(health, text);
 }
 
 }  // namespace scree::cli

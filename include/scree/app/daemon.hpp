@@ -13,9 +13,10 @@
 
 namespace scree {
 
-/// What did not fit in the detector's memory, in one sweep.
+/// What did not fit in the memory of map, detector and tracker, since the start.
 struct Dropped {
-  std::uint64_t points = 0, edge_points = 0, obstacles = 0;
+  std::uint64_t points = 0, edge_points = 0, obstacles = 0;  ///< detector
+  std::uint64_t map_points = 0, tracks = 0;
 };
 
 /// The detector's work on one sweep: the list is valid until the next call. Called from one thread.

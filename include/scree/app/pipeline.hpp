@@ -36,6 +36,7 @@ public:
   const Detector& detector() const { return uses_map_ ? map_detector_ : sweep_detector_; }
   const PointCloud& ground() const { return uses_map_ ? mapper_->map().cloud() : sweep_.points; }
   const Mapper& mapper() const { return *mapper_; }
+  const Tracker& tracker() const { return tracker_; }
   bool uses_map() const { return uses_map_; }
   /// Of the last sweep, as the detector counts; points that did not get to it are dropped ones.
   StageCounts counts() const;

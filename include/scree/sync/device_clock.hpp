@@ -19,6 +19,13 @@ enum class ClockState : std::uint8_t {
 /// "unsynchronised", "estimated" or "pps_locked".
 const char* name_of(ClockState state);
 
+/// How well a device's clock is known, for people.
+struct ClockStatus {
+  ClockState state = ClockState::unsynchronised;
+  std::int64_t offset_ns = 0;    ///< host time minus device time, within half a period around zero
+  std::int64_t accuracy_ns = 0;  ///< see DeviceClock
+};
+
 /// A device's clock on the host's: from the device's time stamps and the host's times of arrival,
 /// and where there is a pulse per second from its edges. The offset and the skew are those of
 /// DelayEnvelope or PpsEdges.
@@ -79,8 +86,9 @@ public:
   /// Edges that did not agree with the packets or with the edges before.
   std::uint64_t edges_refused() const { return edges_refused_; }
 
-  /// Host time minus device time, within half a period around zero: for people.
-  std::int64_t offset_ns() const;
+  /// Before the first update a default one.
+  /// @param ahead_ns added to the host's time: for a clock that people read
+  ClockStatus status(std::int64_t ahead_ns = 0) const;
 
 private:
   /// Packets that do not fit the estimate, but one another.

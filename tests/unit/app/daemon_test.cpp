@@ -77,7 +77,7 @@ protected:
     rock.center.x() = rock_x_;
     rock.points = static_cast<std::uint32_t>(sweep.points.size());
     found_.obstacles.push_back(rock);
-    dropped = {1, 2, 3};
+    dropped = {1, 2, 3, 4, 5};
     return found_;
   }
   std::unique_ptr<Daemon> start() {
@@ -104,13 +104,13 @@ TEST_F(DaemonTest, ListsAndHealthComeAndBlindnessIsSaid) {
   const auto daemon = start();
   ASSERT_TRUE(listener_->until([&] { return listener_->healths > 0; }));
   EXPECT_EQ(listener_->health.state, health_t::BLIND);
-  EXPECT_EQ(listener_->health.lidar.state, lidar_health_t::NEVER_SEEN);
+  EXPECT_EQ(listener_->health.lidar.state, sensor_health_t::NEVER_SEEN);
   EXPECT_EQ(listener_->lists, 0);
   {
     const SendingLidar lidar(settings_.lidar.port);
     ASSERT_TRUE(listener_->until([&] {
       return listener_->lists > 2 && listener_->health.state == health_t::OK &&
-             listener_->health.lists_published > 2;
+             listener_->health.lists_published > 2 && listener_->health.lidar.rate > 0;
     }));
     // Inside runs the monotonic clock, what goes out has the time of the wall clock.
     constexpr double kMinute = 60e9;
@@ -120,13 +120,17 @@ TEST_F(DaemonTest, ListsAndHealthComeAndBlindnessIsSaid) {
         0, kMinute);
     ASSERT_EQ(listener_->list.size, 1);
     EXPECT_GT(listener_->list.obstacles[0].points, 10000);
-    EXPECT_EQ(listener_->health.lidar.sender, "127.0.0.1");
-    EXPECT_GT(listener_->health.lidar.packet_rate, 0);
+    EXPECT_EQ(listener_->health.lidar.source, "127.0.0.1");
+    EXPECT_GT(listener_->health.lidar.expected_rate, 0);
     EXPECT_GT(listener_->health.latency.max_ms, 0);
-    EXPECT_EQ(listener_->health.obstacles_dropped, 3 * listener_->health.detector_time.count);
+    EXPECT_EQ(listener_->health.points_dropped, 1);
+    EXPECT_EQ(listener_->health.edge_points_dropped, 2);
+    EXPECT_EQ(listener_->health.obstacles_dropped, 3);
+    EXPECT_EQ(listener_->health.map_points_dropped, 4);
+    EXPECT_EQ(listener_->health.tracks_dropped, 5);
   }
   ASSERT_TRUE(
-      listener_->until([&] { return listener_->health.lidar.state == lidar_health_t::SILENT; }));
+      listener_->until([&] { return listener_->health.lidar.state == sensor_health_t::SILENT; }));
   EXPECT_EQ(listener_->health.state, health_t::BLIND);
   EXPECT_THAT(listener_->health.reason, HasSubstr("no packets"));
   const int lists = listener_->lists, healths = listener_->healths;

@@ -18,9 +18,9 @@ class HealthWatchTest : public ::testing::Test {
 protected:
   HealthWatchTest() : watch_(settings(), now_) {}
 
-  static LidarSettings settings() {
-    LidarSettings settings;
-    settings.sender = "192.168.1.201";
+  static Settings settings() {
+    Settings settings;
+    settings.lidar.sender = "192.168.1.201";
     return settings;
   }
   /// Lets time pass while the lidar does what `status_` says.
@@ -34,7 +34,16 @@ protected:
     datagram();
     packet();
     last_list_ = now_ - 50 * kMillisecond;
+    measure(milliseconds);
     return update();
+  }
+  void measure(std::int64_t milliseconds) {
+    const auto samples = static_cast<std::uint64_t>(milliseconds / 10);
+    imu_.imu.accepted += samples;
+    imu_.last_bytes_ns = imu_.last_message_ns = now_;
+    encoder_.encoder.accepted += samples;
+    encoder_.last_frame_ns = encoder_.last_sample_ns = now_;
+    encoder_.bus = encoder::BusState::active;
   }
   void datagram() {
     status_.sender = 0xC0A801C9;
@@ -49,7 +58,7 @@ protected:
     status_.lidar.sweeps = 1;
   }
   std::string update() {
-    changed_ = watch_.update(now_, status_, last_list_, health_);
+    changed_ = watch_.update(now_, status_, imu_, encoder_, last_list_, health_);
     std::string log;
     for (const auto& line : watch_.log()) log += (line.is_warning ? "W " : "I ") + line.text + '\n';
     return log;
@@ -57,6 +66,8 @@ protected:
 
   std::int64_t now_ = 5'000 * kMillisecond, last_list_ = 0;
   LidarStatus status_;
+  ImuStatus imu_;
+  EncoderStatus encoder_;
   health_t health_{};
   HealthWatch watch_;
   bool changed_ = false;
@@ -65,10 +76,10 @@ protected:
 TEST_F(HealthWatchTest, WithoutASenderItIsBlindAndSaysSoOnceAfterASecond) {
   EXPECT_THAT(pass(900), IsEmpty());
   EXPECT_EQ(health_.state, health_t::BLIND);
-  EXPECT_EQ(health_.lidar.state, lidar_health_t::NEVER_SEEN);
+  EXPECT_EQ(health_.lidar.state, sensor_health_t::NEVER_SEEN);
   EXPECT_THAT(health_.reason, HasSubstr("nothing has come on UDP port 2368"));
   EXPECT_THAT(pass(100),
-              AllOf(HasSubstr("W nothing has come on UDP port 2368"), HasSubstr("cable")));
+              AllOf(HasSubstr("W no packets on UDP port 2368 have come yet"), HasSubstr("cable")));
   EXPECT_THAT(pass(5000), IsEmpty());
   EXPECT_THAT(drive(50), AllOf(HasSubstr("first datagram"), Not(HasSubstr("again"))));
 }
@@ -87,7 +98,7 @@ TEST_F(HealthWatchTest, SeesOnceListsCome) {
   EXPECT_THAT(update(), AllOf(HasSubstr("from 192.168.1.201 and has 1206 bytes"),
                               HasSubstr("vlp16, strongest return")));
   EXPECT_TRUE(changed_);
-  EXPECT_EQ(health_.lidar.state, lidar_health_t::OK);
+  EXPECT_EQ(health_.lidar.state, sensor_health_t::OK);
   EXPECT_EQ(health_.state, health_t::BLIND);
   EXPECT_THAT(health_.reason, HasSubstr("not made a whole turn"));
   EXPECT_THAT(drive(50), HasSubstr("I sees"));
@@ -98,16 +109,17 @@ TEST_F(HealthWatchTest, SeesOnceListsCome) {
   EXPECT_FALSE(changed_);
 }
 
-TEST_F(HealthWatchTest, SilenceIsBlindWithin300MsAndSaidInTheLogAfterASecond) {
+TEST_F(HealthWatchTest, SilenceIsBlindWithin300Ms) {
   drive(50);
   const std::int64_t last = now_;
   std::string log;
   while (health_.state == health_t::OK) log = pass(50);
   EXPECT_LE(now_ - last, 300 * kMillisecond);
   EXPECT_TRUE(changed_);
-  EXPECT_EQ(health_.lidar.state, lidar_health_t::SILENT);
-  EXPECT_THAT(log, HasSubstr("W blind: no packets on UDP port 2368"));
-  EXPECT_THAT(pass(750), HasSubstr("W no packets on UDP port 2368 for 1 s"));
+  EXPECT_EQ(health_.lidar.state, sensor_health_t::SILENT);
+  EXPECT_THAT(log, AllOf(HasSubstr("W no packets on UDP port 2368 any more: check"),
+                         HasSubstr("W blind: no packets on UDP port 2368")));
+  EXPECT_THAT(pass(750), IsEmpty());
   EXPECT_THAT(pass(2000), IsEmpty());
   EXPECT_THAT(drive(50), AllOf(HasSubstr("again after 3.0 s"), HasSubstr("I sees")));
   EXPECT_EQ(health_.state, health_t::OK);
@@ -117,7 +129,7 @@ TEST_F(HealthWatchTest, DatagramsThatAreNotPacketsAreWrongData) {
   datagram();
   status_.lidar.refused[static_cast<std::size_t>(velodyne::Refusal::size)] = 3;
   EXPECT_THAT(pass(10), HasSubstr("refused: not 1206 bytes long (3 more"));
-  EXPECT_EQ(health_.lidar.state, lidar_health_t::WRONG_DATA);
+  EXPECT_EQ(health_.lidar.state, sensor_health_t::WRONG_DATA);
   EXPECT_THAT(health_.reason, HasSubstr("not 1206 bytes long"));
   EXPECT_THAT(health_.lidar.refused_reason, Contains("size"));
   EXPECT_THAT(health_.lidar.refused_reason, Not(Contains("none")));
@@ -142,6 +154,56 @@ TEST_F(HealthWatchTest, PulsesAndTheirLossAreSaidOnce) {
   EXPECT_THAT(drive(50), IsEmpty());
 }
 
+TEST_F(HealthWatchTest, WithoutImuAndEncoderItSeesAndSaysThatTheyAreSilent) {
+  drive(50);
+  EXPECT_EQ(health_.imu.state, sensor_health_t::OK);
+  EXPECT_EQ(health_.encoder.state, sensor_health_t::OK);
+  EXPECT_EQ(health_.imu.source, "/dev/ttyUSB0");
+  EXPECT_EQ(health_.encoder.source, "can0");
+  EXPECT_EQ(health_.encoder_bus, "active");
+  const std::int64_t last = now_;
+  std::string log;
+  while (health_.imu.state == sensor_health_t::OK) {
+    now_ += 50 * kMillisecond;
+    datagram();
+    packet();
+    last_list_ = now_;
+    log = update();
+  }
+  EXPECT_LE(now_ - last, 300 * kMillisecond);
+  EXPECT_TRUE(changed_);
+  EXPECT_EQ(health_.imu.state, sensor_health_t::SILENT);
+  EXPECT_EQ(health_.encoder.state, sensor_health_t::SILENT);
+  EXPECT_EQ(health_.state, health_t::OK);
+  EXPECT_THAT(log, AllOf(HasSubstr("W no messages from the IMU on /dev/ttyUSB0 any more: check"),
+                         HasSubstr("W no frames of the encoder on can0 any more: check")));
+  EXPECT_THAT(drive(50), AllOf(HasSubstr("I messages from the IMU on /dev/ttyUSB0 again"),
+                               HasSubstr("I frames of the encoder on can0 again")));
+}
+
+TEST_F(HealthWatchTest, ALostBusIsAChange) {
+  drive(50);
+  drive(50);
+  EXPECT_FALSE(changed_);
+  encoder_.bus = encoder::BusState::bus_off;
+  pass(50);
+  EXPECT_TRUE(changed_);
+  EXPECT_EQ(health_.encoder_bus, "bus_off");
+}
+
+TEST_F(HealthWatchTest, AnImuBelowItsConfiguredRateIsSlow) {
+  for (int i = 0; i < 21; ++i) drive(50);
+  EXPECT_EQ(health_.imu.state, sensor_health_t::OK);
+  EXPECT_NEAR(health_.imu.rate, 100, 1);
+  EXPECT_EQ(health_.imu.expected_rate, 100);
+  for (int i = 0; i < 21; ++i) {
+    drive(50);
+    --imu_.imu.accepted;
+  }
+  EXPECT_EQ(health_.imu.state, sensor_health_t::SLOW);
+  EXPECT_EQ(health_.state, health_t::OK);
+}
+
 TEST_F(HealthWatchTest, RefusalsAreSaidAtMostEveryTenSeconds) {
   auto& refused = status_.lidar.refused[static_cast<std::size_t>(velodyne::Refusal::flags)];
   drive(50);
@@ -161,7 +223,7 @@ TEST_F(HealthWatchTest, WithoutListsItIsBlindThoughPacketsCome) {
     update();
   }
   EXPECT_EQ(health_.state, health_t::BLIND);
-  EXPECT_EQ(health_.lidar.state, lidar_health_t::OK);
+  EXPECT_EQ(health_.lidar.state, sensor_health_t::OK);
   EXPECT_THAT(health_.reason, HasSubstr("no sweep has got through the detector"));
   status_.is_last_sweep_empty = true;
   pass(10);

@@ -74,11 +74,11 @@ protected:
 TEST_F(LidarReaderTest, PulsesLockTheLidarsClock) {
   const SendingLidar lidar(settings_.port);
   ASSERT_TRUE(
-      until([](const LidarStatus& status) { return status.clock == ClockState::estimated; }));
+      until([](const LidarStatus& status) { return status.clock.state == ClockState::estimated; }));
   EXPECT_EQ(reader_->status().pulses, 0U);
   EXPECT_TRUE(until([&](const LidarStatus& status) {
     pulses_.pulse(lidar.last_second_ns());
-    return status.clock == ClockState::pps_locked;
+    return status.clock.state == ClockState::pps_locked;
   }));
   EXPECT_GE(reader_->status().pulses, 3U);
 }

@@ -243,16 +243,16 @@ TEST(LidarStream, AShortCapturePlayedInALoopKeepsItsSweeps) {
 
 TEST(LidarStream, SaysHowWellItsClockIsKnown) {
   Sensor sensor;
-  EXPECT_EQ(sensor.stream().clock_state(), ClockState::unsynchronised);
+  EXPECT_EQ(sensor.stream().clock().state(), ClockState::unsynchronised);
   sensor.send_for(1.5);
-  EXPECT_EQ(sensor.stream().clock_state(), ClockState::estimated);
+  EXPECT_EQ(sensor.stream().clock().state(), ClockState::estimated);
   for (int second = 1; second < 5; ++second) {
     sensor.stream().pps(kEpoch + second * kSecond);
     sensor.send_for(1.0);
   }
-  EXPECT_EQ(sensor.stream().clock_state(), ClockState::pps_locked);
-  EXPECT_LT(sensor.stream().clock_accuracy_ns(), 1000);
-  const std::int64_t late_by = sensor.stream().clock_offset_ns() - (kEpoch - 100 * kSecond);
+  EXPECT_EQ(sensor.stream().clock().state(), ClockState::pps_locked);
+  EXPECT_LT(sensor.stream().clock().accuracy_ns(), 1000);
+  const std::int64_t late_by = sensor.stream().clock().status().offset_ns - (kEpoch - 100 * kSecond);
   EXPECT_NEAR(static_cast<double>(late_by % kHourNs), 0, 1000) << "there is no delay in it";
 }
 

@@ -60,11 +60,7 @@ public:
   Firmware firmware() const { return judge_.firmware(); }
   /// The host's time of an edge of the pulse per second that the sensor is locked to.
   void pps(std::int64_t host_edge_ns) { clock_.pps(host_edge_ns); }
-  /// How well the sensor's clock is known on the host's, and how far off times may be.
-  ClockState clock_state() const { return clock_.state(); }
-  std::int64_t clock_accuracy_ns() const { return clock_.accuracy_ns(); }
-  /// Host time minus device time, within half an hour around zero.
-  std::int64_t clock_offset_ns() const { return clock_.offset_ns(); }
+  const DeviceClock& clock() const { return clock_; }
 
 private:
   struct Held {

@@ -51,6 +51,7 @@ public:
   void flush();
 
   const ImuCounters& counters() const { return counters_; }
+  const DeviceClock& clock() const { return clock_.clock(); }
 
 private:
   void take_message(const Message& message, std::int64_t arrival_ns);

@@ -1,0 +1,140 @@
+#include "sensor_watch.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace scree {
+namespace {
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+constexpr double kSlow = 0.90, kSlowNoMore = 0.95;
+
+static_assert(static_cast<int>(ClockState::unsynchronised) == sensor_health_t::UNSYNCHRONISED &&
+              static_cast<int>(ClockState::estimated) == sensor_health_t::ESTIMATED &&
+              static_cast<int>(ClockState::pps_locked) == sensor_health_t::PPS_LOCKED);
+
+std::int64_t signed_count(std::uint64_t count) {
+  return static_cast<std::int64_t>(count);
+}
+
+void fill(const SensorStatus& status, sensor_health_t& health) {
+  health.source = status.source;
+  health.messages = signed_count(status.messages);
+  health.lost = signed_count(status.lost);
+  health.kernel_drops = signed_count(status.kernel_drops);
+  health.refused_reason.clear();
+  health.refused.clear();
+  for (const auto& refused : status.refused) {
+    health.refused_reason.emplace_back(refused.name);
+    health.refused.push_back(signed_count(refused.count));
+  }
+  health.reasons = static_cast<std::int32_t>(health.refused.size());
+  health.clock = static_cast<std::int8_t>(status.clock.state);
+  health.clock_offset_s = static_cast<double>(status.clock.offset_ns) / 1e9;
+  health.clock_accuracy_ms = static_cast<double>(status.clock.accuracy_ns) / 1e6;
+}
+
+}  // namespace
+
+std::string_view SensorStatus::main_reason() const {
+  const auto most =
+      std::max_element(refused.begin(), refused.end(),
+                       [](const Refused& a, const Refused& b) { return a.count < b.count; });
+  return most == refused.end() || most->count == 0 ? "no message in it"
+                                                   : std::string_view(most->reason);
+}
+
+SensorWatch::SensorWatch(Terms terms, std::int64_t now_ns)
+    : terms_(std::move(terms)), start_ns_(now_ns) {}
+
+bool SensorWatch::update(std::int64_t now_ns, const SensorStatus& status, sensor_health_t& health,
+                         LogLines& log) {
+  fill(status, health);
+  measure(now_ns, status, health);
+  const std::int8_t before = health.state;
+  const bool is_slow = judged_ == sensor_health_t::OK && is_slow_;
+  health.state = is_slow ? sensor_health_t::SLOW : judged_;
+
+  if (health.state != before) log.push_back(line_of(now_ns, status, health, before));
+  last_heard_ns_ = status.last_heard_ns;
+  if (judged_ == sensor_health_t::NEVER_SEEN && !said_missing_ && now_ns - start_ns_ >= kSecond) {
+    log.push_back({true, fmt::format("no {} have come yet: {}", terms_.messages, terms_.advice)});
+    said_missing_ = true;
+  }
+  refused_.resize(status.refused.size());
+  for (std::size_t i = 0; i < refused_.size(); ++i) {
+    refused_[i].say(now_ns, status.refused[i].count,
+                    fmt::format("{} refused: {}", terms_.messages, status.refused[i].reason), log);
+  }
+  kernel_drops_.say(
+      now_ns, status.kernel_drops,
+      fmt::format("{} dropped by the kernel: the reader was too slow", terms_.messages), log);
+  return health.state != before;
+}
+
+std::int8_t SensorWatch::judge(std::int64_t now_ns, const SensorStatus& status) {
+  if (status.last_heard_ns == 0) return sensor_health_t::NEVER_SEEN;
+  if (now_ns - status.last_heard_ns > kSilence) return sensor_health_t::SILENT;
+  const bool is_understood =
+      status.last_message_ns != 0 && now_ns - status.last_message_ns <= kSilence;
+  return is_understood ? sensor_health_t::OK : sensor_health_t::WRONG_DATA;
+}
+
+void SensorWatch::measure(std::int64_t now_ns, const SensorStatus& status,
+                          sensor_health_t& health) {
+  const std::int8_t judged = judge(now_ns, status);
+  const std::int64_t elapsed_ns = now_ns - begin_ns_;
+  if (judged != judged_) {
+    health.rate = 0;
+    is_slow_ = false;
+  } else if (elapsed_ns >= kSecond) {
+    const auto per_second = [&](std::uint64_t count) {
+      return static_cast<double>(count) / (static_cast<double>(elapsed_ns) * 1e-9);
+    };
+    health.rate = per_second(status.messages - begin_messages_);
+    health.expected_rate = terms_.expected_rate > 0
+                               ? terms_.expected_rate
+                               : health.rate + per_second(status.lost - begin_lost_);
+    is_slow_ = health.rate < health.expected_rate * (is_slow_ ? kSlowNoMore : kSlow);
+  } else {
+    return;
+  }
+  judged_ = judged;
+  begin_ns_ = now_ns;
+  begin_messages_ = status.messages;
+  begin_lost_ = status.lost;
+}
+
+LogLine SensorWatch::line_of(std::int64_t now_ns, const SensorStatus& status,
+                             const sensor_health_t& health, std::int8_t before) const {
+  const std::string& messages = terms_.messages;
+  switch (health.state) {
+    case sensor_health_t::SILENT:
+      return {true, fmt::format("no {} any more: {}", messages, terms_.advice)};
+    case sensor_health_t::WRONG_DATA:
+      return {true, fmt::format("{} are not understood ({}): is it the configured sensor, and set "
+                                "up as configured?",
+                                messages, status.main_reason())};
+    case sensor_health_t::SLOW:
+      return {true, fmt::format("only {:.0f} of {:.0f} {} a second: a bad line, a busy computer, "
+                                "or another rate set in the sensor?",
+                                health.rate, health.expected_rate, messages)};
+    default:
+      break;
+  }
+  switch (before) {
+    case sensor_health_t::NEVER_SEEN:
+      return {false, fmt::format("{} come and are understood", messages)};
+    case sensor_health_t::SILENT:
+      return {false, fmt::format("{} again after {:.1f} s", messages,
+                                 static_cast<double>(now_ns - last_heard_ns_) / kSecond)};
+    case sensor_health_t::SLOW:
+      return {false, fmt::format("{} as many as there should be again", messages)};
+    default:
+      return {false, fmt::format("{} are understood", messages)};
+  }
+}
+
+}  // namespace scree

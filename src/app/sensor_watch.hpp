@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstdint>
+#include <scree/sensor_health_t.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "log_lines.hpp"
+#include "scree/sync/device_clock.hpp"
+
+namespace scree {
+
+/// What SensorWatch asks of any sensor. Times are of the steady clock, 0 before the first; counts
+/// are since the start.
+struct SensorStatus {
+  struct Refused {
+    std::string_view name;  ///< in health
+    std::string reason;     ///< for people
+    std::uint64_t count;
+  };
+
+  std::string source;
+  std::int64_t last_heard_ns = 0;    ///< anything at all
+  std::int64_t last_message_ns = 0;  ///< understood
+  std::uint64_t messages = 0, lost = 0, kernel_drops = 0;
+  std::vector<Refused> refused;
+  ClockStatus clock;
+
+  /// Why most was refused.
+  std::string_view main_reason() const;
+};
+
+/// Judges one sensor, fills in its part of health and says what a person should read in the log.
+/// Knows no clock: `now_ns` is the steady clock's.
+///
+/// | state      | when                                                               |
+/// |------------|--------------------------------------------------------------------|
+/// | NEVER_SEEN | nothing has come since the start                                   |
+/// | SILENT     | nothing for kSilence                                               |
+/// | WRONG_DATA | something comes, and nothing was understood for kSilence           |
+/// | SLOW       | under 90 % of the expected rate in a second, until 95 % come again |
+/// | OK         | else                                                               |
+class SensorWatch {
+public:
+  // The daemon looks every 50 ms, so that silence is published within 300 ms. A VLP-16 sends a
+  // packet every 1.3 ms, an MTi a message every 10 ms, an encoder a frame every 100 ms at least.
+  static constexpr std::int64_t kSilence = 200'000'000;
+
+  struct Terms {
+    std::string messages;      ///< "packets on UDP port 2368"
+    std::string advice;        ///< what to look at when they do not come
+    double expected_rate = 0;  ///< of messages, a second; 0: all that came and that were lost
+  };
+
+  SensorWatch(Terms terms, std::int64_t now_ns);
+
+  /// Brings `health` up to date and adds to `log`. True when the state changed.
+  bool update(std::int64_t now_ns, const SensorStatus& status, sensor_health_t& health,
+              LogLines& log);
+
+private:
+  /// The state but for SLOW.
+  static std::int8_t judge(std::int64_t now_ns, const SensorStatus& status);
+  void measure(std::int64_t now_ns, const SensorStatus& status, sensor_health_t& health);
+  LogLine line_of(std::int64_t now_ns, const SensorStatus& status, const sensor_health_t& health,
+                  std::int8_t before) const;
+
+  Terms terms_;
+  std::int64_t start_ns_, last_heard_ns_ = 0;
+  bool said_missing_ = false;
+
+  // The second over which the rate is measured; it begins anew when the state changes.
+  std::int8_t judged_ = sensor_health_t::NEVER_SEEN;
+  std::int64_t begin_ns_ = 0;
+  std::uint64_t begin_messages_ = 0, begin_lost_ = 0;
+  bool is_slow_ = false;
+
+  std::vector<Growth> refused_;
+  Growth kernel_drops_;
+};
+
+}  // namespace scree
