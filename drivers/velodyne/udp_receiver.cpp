@@ -90,6 +90,7 @@ std::optional<ReceivedDatagram> UdpReceiver::receive(std::span<std::uint8_t> buf
     ReceivedDatagram datagram;
     datagram.arrival_ns = message.arrival_ns;
     datagram.sender = ntohl(message.sender.sin_addr.s_addr);
+    datagram.sender_port = ntohs(message.sender.sin_port);
     if (accepted_sender_ != 0 && datagram.sender != accepted_sender_) {
       ++counts_.foreign;
       continue;

@@ -172,8 +172,17 @@ void CanLogWriter::write(const CanFrame& frame, std::string_view interface) {
   stream_.write(line.data(), static_cast<std::streamsize>(line.size()));
 }
 
+Result<void> CanLogWriter::flush() {
+  stream_.flush();
+  return result();
+}
+
 Result<void> CanLogWriter::close() {
   stream_.close();
+  return result();
+}
+
+Result<void> CanLogWriter::result() const {
   if (!stream_) return fail(fmt::format("cannot write {}: the disk may be full", name_));
   return {};
 }

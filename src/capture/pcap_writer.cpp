@@ -110,12 +110,18 @@ void PcapWriter::write(std::int64_t arrival_ns, std::span<const std::uint8_t> by
   dump(dumper_.get(), arrival_ns, bytes);
 }
 
-Result<void> PcapWriter::close() {
+Result<void> PcapWriter::flush() {
   std::FILE* const stream = pcap_dump_file(dumper_.get());
-  const bool failed = pcap_dump_flush(dumper_.get()) != 0 || std::ferror(stream) != 0;
-  dumper_.reset();
-  if (failed) return fail(fmt::format("cannot write {}: the disk may be full", name_));
+  if (pcap_dump_flush(dumper_.get()) != 0 || std::ferror(stream) != 0) {
+    return fail(fmt::format("cannot write {}: the disk may be full", name_));
+  }
   return {};
+}
+
+Result<void> PcapWriter::close() {
+  auto flushed = flush();
+  dumper_.reset();
+  return flushed;
 }
 
 }  // namespace scree

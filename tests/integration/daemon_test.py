@@ -3,16 +3,13 @@
 import json
 import os
 import signal
-import socket
-import subprocess
 import sys
-import tempfile
 import unittest
 
+from programs import PATIENCE, ProgramTest, free_port
 from synthetic_capture import write_capture
 
 SCREED, SCREE = sys.argv[1:3]
-PATIENCE = 120  # seconds; only a hang lasts as long
 
 # Finds nothing, whatever the features are.
 NETWORK = """scree_network 1
@@ -28,19 +25,9 @@ output 0 -9
 """
 
 
-def free_port():
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
-
-
-class DaemonTest(unittest.TestCase):
+class DaemonTest(ProgramTest):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = folder.name
-        self.port, self.position_port = free_port(), free_port()
-        self.url = f"udpm://239.255.76.67:{free_port()}?ttl=0"
+        super().setUp()
         self.config = self.write(
             "robot.toml",
             f'[lidar]\naddress = "127.0.0.1"\nport = {self.port}\n'
@@ -49,37 +36,10 @@ class DaemonTest(unittest.TestCase):
         )
         self.write("network.txt", NETWORK)
 
-    def write(self, name, text):
-        path = os.path.join(self.folder, name)
-        with open(path, "w") as file:
-            file.write(text)
-        return path
-
-    def start(self, *arguments):
-        process = subprocess.Popen(
-            arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-        )
-
-        def clean_up():
-            process.kill()
-            process.communicate()
-
-        self.addCleanup(clean_up)
-        return process
-
     def start_daemon(self):
         daemon = self.start(SCREED, "--config", self.config)
         self.read_until(daemon.stderr, "publishing on")
         return daemon
-
-    def run_to_end(self, *arguments):
-        return subprocess.run(arguments, capture_output=True, text=True, timeout=PATIENCE)
-
-    def read_until(self, stream, words):
-        for line in stream:
-            if words in line:
-                return line
-        self.fail(f'the program ended before it said "{words}"')
 
     def watch(self, *arguments):
         return [SCREE, "watch", "--url", self.url, *arguments]
@@ -89,14 +49,6 @@ class DaemonTest(unittest.TestCase):
         write_capture(capture, seconds=1)
         return [SCREE, "replay", capture, "--to", f"127.0.0.1:{self.port}",
                 "--position-port", str(self.position_port), *arguments]  # fmt: skip
-
-    def assert_fails(self, result, *words):
-        """It failed with one sentence that holds these words."""
-        self.assertEqual(result.returncode, 1, result.stderr)
-        self.assertEqual(result.stdout, "")
-        sentence = result.stderr.strip().splitlines()[-1]
-        for word in words:
-            self.assertIn(word, sentence)
 
     def test_a_replayed_capture_gives_lists_and_health(self):
         daemon = self.start_daemon()

@@ -1,6 +1,5 @@
 #include <arpa/inet.h>
 #include <netinet/in.h>
-#include <signal.h>
 #include <sys/socket.h>
 #include <time.h>
 
@@ -11,6 +10,7 @@
 #include <memory>
 
 #include "commands.hpp"
+#include "interruption.hpp"
 #include "scree/capture/capture.hpp"
 #include "scree/capture/pcap_reader.hpp"
 #include "scree/config/settings.hpp"
@@ -29,15 +29,6 @@ struct Options {
   bool loop = false;
 };
 
-volatile sig_atomic_t is_interrupted = 0;
-
-void stop_on_signals() {
-  struct sigaction action {};
-  action.sa_handler = [](int) { is_interrupted = 1; };
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-}
-
 std::int64_t monotonic_ns() {
   timespec now;
   clock_gettime(CLOCK_MONOTONIC, &now);
@@ -46,7 +37,7 @@ std::int64_t monotonic_ns() {
 
 void sleep_until(std::int64_t due_ns) {
   const timespec due{due_ns / kSecond, due_ns % kSecond};
-  while (!is_interrupted &&
+  while (!is_interrupted() &&
          clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due, nullptr) == EINTR) {
   }
 }
@@ -119,14 +110,14 @@ public:
     std::int64_t first = 0, last = 0;
     bool is_first = true;
     Datagram datagram;
-    while (!is_interrupted && reader.next(datagram)) {
+    while (!is_interrupted() && reader.next(datagram)) {
       const bool is_data = datagram.destination_port == captured_data_;
       if (!is_data && datagram.destination_port != captured_position_) continue;
       if (is_first) first = datagram.arrival_ns;
       is_first = false;
       last = datagram.arrival_ns - first;
       if (rate_ > 0) sleep_until(turn_start_ns_ + start_ns_ + in_real_time(last));
-      if (!is_interrupted) (is_data ? data_ : position_).send(datagram.payload);
+      if (!is_interrupted()) (is_data ? data_ : position_).send(datagram.payload);
       if (data_.is_deaf()) {
         throw Failure("nobody listens on " + data_.name() + ": is screed running?");
       }
@@ -183,14 +174,14 @@ void replay(const Options& options) {
     auto reader = PcapReader::open(*file);
     if (!reader) throw Failure(reader.error().message);
     replay.play(*reader);
-    if (replay.data().sent() == 0 && !is_interrupted) {
+    if (replay.data().sent() == 0 && !is_interrupted()) {
       throw Failure(file->string() + " has no UDP datagrams to port " +
                     std::to_string(settings.lidar.port));
     }
     if (!reader->broken_off().empty()) {
       std::fprintf(stderr, "scree: %s\n", reader->broken_off().c_str());
     }
-  } while (options.loop && !is_interrupted);
+  } while (options.loop && !is_interrupted());
   replay.print_summary();
 }
 

@@ -66,10 +66,14 @@ public:
   static Result<CanLogWriter> create(const std::filesystem::path& file);
 
   void write(const CanFrame& frame, std::string_view interface);
-  /// Writes out what is buffered. An error (a full disk) shows itself here at the latest.
+  /// Writes out what is buffered: the file is whole from here on, whatever happens. An error (a
+  /// full disk) shows itself here or in close().
+  Result<void> flush();
   Result<void> close();
 
 private:
+  Result<void> result() const;
+
   std::string name_;
   std::ofstream stream_;
 };

@@ -30,7 +30,9 @@ public:
   /// @pre created as a serial stream
   void write(std::int64_t arrival_ns, std::span<const std::uint8_t> bytes);
 
-  /// Writes out what is buffered. An error (a full disk) shows itself here at the latest.
+  /// Writes out what is buffered: the file is whole from here on, whatever happens. An error (a
+  /// full disk) shows itself here or in close().
+  Result<void> flush();
   Result<void> close();
 
 private:

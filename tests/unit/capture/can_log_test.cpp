@@ -203,6 +203,7 @@ TEST(CanLogWriter, AFullDiskShows) {
   auto writer = CanLogWriter::create("/dev/full");
   ASSERT_TRUE(writer);
   writer->write({}, "can0");
+  EXPECT_FALSE(writer->flush());
   EXPECT_FALSE(writer->close());
   EXPECT_FALSE(CanLogWriter::create("/nonexistent/can.log"));
 }

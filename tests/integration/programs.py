@@ -1,0 +1,72 @@
+"""What tests of screed and scree as programs share."""
+
+import os
+import socket
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PATIENCE = 120  # seconds; only a hang lasts as long
+
+
+def free_port():
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+class ProgramTest(unittest.TestCase):
+    """Has a folder of its own, ports and an LCM url that no other test has."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+        self.port, self.position_port = free_port(), free_port()
+        self.url = f"udpm://239.255.76.67:{free_port()}?ttl=0"
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def write(self, name, text):
+        path = self.path(name)
+        with open(path, "w") as file:
+            file.write(text)
+        return path
+
+    def start(self, *arguments, **options):
+        process = subprocess.Popen(
+            arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options
+        )
+
+        def clean_up():
+            process.kill()
+            process.communicate()
+
+        self.addCleanup(clean_up)
+        return process
+
+    def run_to_end(self, *arguments, **options):
+        return subprocess.run(arguments, capture_output=True, text=True, timeout=PATIENCE, **options)
+
+    def read_until(self, stream, words):
+        for line in stream:
+            if words in line:
+                return line
+        self.fail(f'the program ended before it said "{words}"')
+
+    def assert_fails(self, result, *words):
+        """It failed with one sentence that holds these words."""
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertEqual(result.stdout, "")
+        sentence = result.stderr.strip().splitlines()[-1]
+        for word in words:
+            self.assertIn(word, sentence)
+
+
+def main(tests):
+    """Runs them; exit code 77 where one was skipped, which CTest then says."""
+    outcome = unittest.main(argv=[sys.argv[0], *tests], exit=False).result
+    skipped = outcome.skipped and outcome.wasSuccessful()
+    sys.exit(77 if skipped else not outcome.wasSuccessful())

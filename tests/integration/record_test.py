@@ -1,0 +1,167 @@
+"""scree record as a program, on live sensors: python3 record_test.py SCREE [TEST ...]"""
+
+import csv
+import glob
+import os
+import resource
+import shutil
+import signal
+import sys
+import time
+
+from live_sensors import EmulatedMti, Player, can_socket
+from programs import PATIENCE, ProgramTest, main
+
+SCREE = sys.argv[1]
+
+DBC = """BO_ 340 WHEEL: 8 ECU
+ SG_ WAY : 12|20@1+ (1,0) [0|0] "" X
+"""
+
+
+class RecordTest(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.original, self.recording = self.path("original"), self.path("recording")
+        self.mti = EmulatedMti(self.path("imu"))
+        self.config = self.write("robot.toml", self.configuration())
+
+    def configuration(self, encoder='interface = "vcan0"\n'):
+        return (
+            f'[lidar]\naddress = "127.0.0.1"\nport = {self.port}\n'
+            f'position_port = {self.position_port}\n[imu]\ndevice = "{self.mti.port}"\n'
+            f"[encoder]\n{encoder}"
+        )
+
+    def simulate(self, seconds):
+        done = self.run_to_end(SCREE, "simulate", self.original, "--seconds", str(seconds),
+                               "--scene", "easy")  # fmt: skip
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def record(self, *arguments, **options):
+        """Starts it, and waits until it listens."""
+        process = self.start(SCREE, "record", self.recording, "--config", self.config, *arguments,
+                             **options)  # fmt: skip
+        self.read_until(process.stderr, "recording to")
+        return process
+
+    def play(self, can=None):
+        self.mti.plug_in()
+        self.assertTrue(self.mti.measures.wait(PATIENCE), "the IMU was not started")
+        player = Player(self.original, self.port, self.position_port, self.mti, can)
+        player.wait()
+        player.stop()
+        time.sleep(0.3)  # until what was sent last is read
+
+    def decode(self, capture, sensor, *arguments):
+        out = self.path("decoded.csv")
+        done = self.run_to_end(SCREE, "decode", capture, "--sensor", sensor, "--out", out, *arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with open(out, newline="") as file:
+            return list(csv.reader(file))
+
+    def assert_same_values(self, sensor, *arguments):
+        """All but the times, which are those of the recording's clock."""
+        recorded = self.decode(self.recording, sensor)
+        original = self.decode(self.original, sensor, *arguments)
+        self.assertGreater(len(original), 100)
+        self.assertEqual([row[1:] for row in recorded], [row[1:] for row in original])
+
+    def test_what_is_recorded_decodes_to_the_same_values(self):
+        self.simulate(2)
+        process = self.record()
+        self.play()
+        process.send_signal(signal.SIGINT)
+        _, summary = process.communicate(timeout=PATIENCE)
+        self.assertEqual(process.returncode, 0, summary)
+        self.assertRegex(summary, r"recorded \d+\.\d s; lidar \d+ packets, .* MB; imu \d+ reads, .* kB; can")
+        self.assert_same_values("lidar")
+        self.assert_same_values("imu")
+        info = self.run_to_end(SCREE, "info", self.recording)
+        self.assertEqual(info.returncode, 0, info.stderr)
+        self.assertIn("from 127.0.0.1", info.stdout)
+        lists = self.run_to_end(SCREE, "detect", self.recording, "--out", self.path("lists.jsonl"))
+        self.assertEqual(lists.returncode, 0, lists.stderr)
+        self.assertNotIn("no sample of the IMU", lists.stderr)
+
+    def test_frames_of_the_can_bus_are_recorded(self):
+        can, reason = can_socket("vcan0")
+        if can is None:
+            self.skipTest(reason)
+        self.addCleanup(can.close)
+        self.simulate(1)
+        with open(os.path.join(self.original, "scree.toml")) as file:
+            encoder = file.read().split("[encoder]\n")[1].replace('"can0"', '"vcan0"')
+        self.config = self.write("robot.toml", self.configuration(encoder))
+        process = self.record()
+        self.play(can)
+        process.send_signal(signal.SIGTERM)
+        _, summary = process.communicate(timeout=PATIENCE)
+        self.assertEqual(process.returncode, 0, summary)
+        self.assert_same_values("encoder")
+
+    def test_a_killed_recording_is_whole(self):
+        self.simulate(1)
+        process = self.record()
+        self.play()
+        process.kill()
+        process.communicate()
+        self.assert_same_values("lidar")
+        self.assert_same_values("imu")
+
+    def test_files_that_the_configuration_names_come_along(self):
+        os.mkdir(self.path("robot"))
+        dbc = self.write("robot/wheel.dbc", DBC)
+        network = glob.glob(os.path.join(os.path.dirname(SCREE), "..", "share", "scree",
+                                         "network_sweep.txt"))[0]  # fmt: skip
+        shutil.copy(network, self.path("robot/own.txt"))
+        self.config = self.write(
+            "robot.toml",
+            self.configuration(f'dbc = "{dbc}"\nsignal = "WHEEL.WAY"\nscale = 0.001\n')
+            + '[detect.sweep]\nnetwork = "robot/own.txt"\n',
+        )
+        self.simulate(1)
+        process = self.record()
+        self.play()
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=PATIENCE)
+        shutil.rmtree(self.path("robot"))
+        lists = self.run_to_end(SCREE, "detect", self.recording, "--out", self.path("lists.jsonl"))
+        self.assertEqual(lists.returncode, 0, lists.stderr)
+
+    def test_missing_sensors_are_waited_for_and_said(self):
+        self.mti.port = self.path("elsewhere")
+        process = self.record("--seconds", "1.5")
+        _, said = process.communicate(timeout=PATIENCE)
+        self.assertEqual(process.returncode, 1, said)
+        self.assertIn("imu is not there: is the IMU plugged in?", said)
+        self.assertIn("vcan0", said)
+        self.assertIn("nothing came from any sensor", said.splitlines()[-1])
+
+    def test_a_port_in_use_and_a_folder_in_use_are_one_sentence(self):
+        self.record()
+        again = [SCREE, "record", self.path("other"), "--config", self.config]
+        self.assert_fails(self.run_to_end(*again), f"UDP port {self.port}", "in use")
+        self.assertFalse(os.path.exists(self.path("other")))
+        self.config = self.write("other.toml", "[lidar]\nport = 23681\nposition_port = 23682\n")
+        again = [SCREE, "record", self.recording, "--config", self.config]
+        self.assert_fails(self.run_to_end(*again), "not an empty folder")
+        self.assert_fails(self.run_to_end(SCREE, "record", self.path("x"), "--config", "none"),
+                          "cannot read the configuration file none")  # fmt: skip
+
+    def test_a_full_disk_is_said(self):
+        self.simulate(1)
+
+        def limit_files():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
+
+        # Python ignores SIGXFSZ, and so does what it starts.
+        process = self.record(preexec_fn=limit_files, restore_signals=False)
+        self.play()
+        _, said = process.communicate(timeout=PATIENCE)
+        self.assertEqual(process.returncode, 1, said)
+        self.assertIn("lidar.pcap: the disk may be full", said.splitlines()[-1])
+
+
+if __name__ == "__main__":
+    main(sys.argv[2:])

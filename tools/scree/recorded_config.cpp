@@ -1,0 +1,61 @@
+#include "recorded_config.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <string>
+
+#include "commands.hpp"
+
+namespace scree::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// In quotes, as it stands in a TOML file.
+void replace_quoted(std::string& toml, const std::string& name, const std::string& by) {
+  bool found = false;
+  for (const char quote : {'"', '\''}) {
+    const std::string quoted = quote + name + quote;
+    for (std::size_t at = 0; (at = toml.find(quoted, at)) != std::string::npos; at += by.size()) {
+      toml.replace(at + 1, name.size(), by);
+      found = true;
+    }
+  }
+  if (!found) {
+    throw Failure(
+        fmt::format("cannot find \"{}\" in the configuration: write it without escapes", name));
+  }
+}
+
+}  // namespace
+
+void keep_config(const fs::path& config, const Settings& settings, const fs::path& folder) {
+  std::ifstream read(config, std::ios::binary);
+  std::string toml{std::istreambuf_iterator<char>(read), {}};
+  const std::set<std::string> names = {settings.encoder.dbc, settings.detect_cloud.network,
+                                       settings.detect_map.network, settings.detect_sweep.network};
+  for (const std::string& name : names) {
+    const fs::path source = config.parent_path() / name;
+    std::error_code error;
+    if (!fs::is_regular_file(source, error)) continue;
+    const fs::path copy = folder / source.filename();
+    fs::copy_file(source, copy, error);
+    if (error) {
+      throw Failure(
+          fmt::format("cannot copy {} to {}: {}", source.string(), copy.string(), error.message()));
+    }
+    if (source.filename() != name) replace_quoted(toml, name, source.filename());
+  }
+  const fs::path file = folder / "scree.toml";
+  std::ofstream write(file, std::ios::binary);
+  write << toml;
+  write.close();
+  if (!read || !write) {
+    throw Failure(fmt::format("cannot copy {} to {}", config.string(), file.string()));
+  }
+}
+
+}  // namespace scree::cli

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <poll.h>
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scree/capture/can_log.hpp"
+#include "scree/capture/pcap_writer.hpp"
+#include "scree/config/settings.hpp"
+#include "scree/drivers/encoder/can_socket.hpp"
+#include "scree/drivers/velodyne/udp_receiver.hpp"
+#include "scree/drivers/xsens/device.hpp"
+
+namespace scree::cli {
+
+/// One sensor's part of a recording.
+class Recorder {
+public:
+  Recorder(const char* name, const char* unit) : name_(name), unit_(unit) {}
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+  virtual ~Recorder() = default;
+
+  /// What is readable when there is something to write.
+  virtual void add_descriptors(std::vector<pollfd>& wait_for) const = 0;
+  /// Writes what has come, all of it into the file at once, and looks after a sensor that is
+  /// missing. Throws Failure where the file cannot be written.
+  virtual void work(std::int64_t now_ns) = 0;
+  virtual void close() = 0;
+
+  /// "lidar 9048 packets, 11.4 MB"
+  std::string progress() const;
+  /// What a person has to do now, one sentence; mostly empty.
+  const std::string& problem() const { return problem_; }
+  std::uint64_t count() const { return count_; }
+
+protected:
+  void wrote(std::size_t bytes) {
+    ++count_;
+    bytes_ += bytes;
+  }
+  std::string problem_;
+
+private:
+  const char* name_;
+  const char* unit_;
+  std::uint64_t count_ = 0, bytes_ = 0;
+};
+
+/// The datagrams of the data and of the position port, as frames.
+class LidarRecorder final : public Recorder {
+public:
+  /// Opens the ports; throws Failure where another program has them.
+  explicit LidarRecorder(const LidarSettings& settings);
+
+  /// Throws Failure.
+  void create(const std::filesystem::path& file);
+  void add_descriptors(std::vector<pollfd>& wait_for) const override;
+  void work(std::int64_t now_ns) override;
+  void close() override;
+
+private:
+  void read(UdpReceiver& port);
+
+  UdpReceiver data_, position_;
+  std::optional<PcapWriter> file_;
+  std::array<std::uint8_t, 65536> buffer_{};
+};
+
+/// What each read from the IMU's port brings, once it measures.
+class ImuRecorder final : public Recorder {
+public:
+  ImuRecorder(const ImuSettings& settings, const std::filesystem::path& file);
+
+  void add_descriptors(std::vector<pollfd>& wait_for) const override;
+  void work(std::int64_t now_ns) override;
+  void close() override;
+
+private:
+  ImuSettings settings_;
+  PcapWriter file_;
+  std::optional<xsens::Device> device_;
+  std::int64_t retry_ns_ = 0;
+};
+
+/// Every frame of the encoder's CAN interface, of whatever device.
+class CanRecorder final : public Recorder {
+public:
+  CanRecorder(std::string interface, const std::filesystem::path& file);
+
+  void add_descriptors(std::vector<pollfd>& wait_for) const override;
+  void work(std::int64_t now_ns) override;
+  void close() override;
+
+private:
+  std::string interface_;
+  CanLogWriter file_;
+  std::optional<encoder::CanSocket> socket_;
+  std::int64_t retry_ns_ = 0;
+};
+
+}  // namespace scree::cli
