@@ -2,6 +2,7 @@
 
 #include <scree/health_t.hpp>
 #include <string>
+#include <utility>
 
 #include "log_lines.hpp"
 #include "scree/config/settings.hpp"

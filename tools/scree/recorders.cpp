@@ -9,13 +9,26 @@
 namespace scree::cli {
 namespace {
 
-constexpr std::int64_t kRetryAfter = 1'000'000'000;  // to open what is missing
-
 void require(const Result<void>& done) {
   if (!done) throw Failure(done.error().message);
 }
 
 }  // namespace
+
+template <class Device, class Open>
+bool Recorder::is_open(std::optional<Device>& device, std::int64_t now_ns, Open open) {
+  constexpr std::int64_t kRetryAfter = 1'000'000'000;
+  if (device) return true;
+  if (now_ns < retry_ns_) return false;
+  retry_ns_ = now_ns + kRetryAfter;
+  auto opened = open();
+  if (opened) {
+    device.emplace(std::move(*opened));
+  } else {
+    problem_ = opened.error().message;
+  }
+  return device.has_value();
+}
 
 std::string Recorder::progress() const {
   const double kilobytes = static_cast<double>(bytes_) / 1e3;
@@ -71,16 +84,7 @@ void ImuRecorder::add_descriptors(std::vector<pollfd>& wait_for) const {
 }
 
 void ImuRecorder::work(std::int64_t now_ns) {
-  if (!device_) {
-    if (now_ns < retry_ns_) return;
-    retry_ns_ = now_ns + kRetryAfter;
-    auto opened = xsens::Device::open(settings_);
-    if (!opened) {
-      problem_ = opened.error().message;
-      return;
-    }
-    device_.emplace(std::move(*opened));
-  }
+  if (!is_open(device_, now_ns, [&] { return xsens::Device::open(settings_); })) return;
   while (const auto received = device_->advance(now_ns)) {
     file_.write(received->arrival_ns, received->bytes);
     wrote(received->bytes.size());
@@ -104,16 +108,7 @@ void CanRecorder::add_descriptors(std::vector<pollfd>& wait_for) const {
 }
 
 void CanRecorder::work(std::int64_t now_ns) {
-  if (!socket_) {
-    if (now_ns < retry_ns_) return;
-    retry_ns_ = now_ns + kRetryAfter;
-    auto opened = encoder::CanSocket::open(interface_);
-    if (!opened) {
-      problem_ = opened.error().message;
-      return;
-    }
-    socket_.emplace(std::move(*opened));
-  }
+  if (!is_open(socket_, now_ns, [&] { return encoder::CanSocket::open(interface_); })) return;
   while (const auto frame = socket_->receive()) {
     file_.write(*frame, interface_);
     wrote(frame->size);

@@ -44,12 +44,17 @@ protected:
     ++count_;
     bytes_ += bytes;
   }
+  /// Whether it is there; where it is missing it is tried once a second.
+  template <class Device, class Open>
+  bool is_open(std::optional<Device>& device, std::int64_t now_ns, Open open);
+
   std::string problem_;
 
 private:
   const char* name_;
   const char* unit_;
   std::uint64_t count_ = 0, bytes_ = 0;
+  std::int64_t retry_ns_ = 0;
 };
 
 /// The datagrams of the data and of the position port, as frames.
@@ -85,7 +90,6 @@ private:
   ImuSettings settings_;
   PcapWriter file_;
   std::optional<xsens::Device> device_;
-  std::int64_t retry_ns_ = 0;
 };
 
 /// Every frame of the encoder's CAN interface, of whatever device.
@@ -101,7 +105,6 @@ private:
   std::string interface_;
   CanLogWriter file_;
   std::optional<encoder::CanSocket> socket_;
-  std::int64_t retry_ns_ = 0;
 };
 
 }  // namespace scree::cli

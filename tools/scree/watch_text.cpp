@@ -19,7 +19,7 @@ std::string time_of_day(std::int64_t stamp_ns) {
 
 const char* state_name(std::int8_t state) {
   constexpr std::array kNames = {"never seen", "ok", "silent", "wrong data", "slow"};
-  const auto index = static_cast<std::size_t>(state);
+  const auto index = static_cast<std::uint8_t>(state);
   return index < kNames.size() ? kNames[index] : "in an unknown state";
 }
 

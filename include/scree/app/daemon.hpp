@@ -39,7 +39,7 @@ public:
                                                SyncBuffer* sensors = nullptr,
                                                const RobotLines& lines = {});
 
-  /// Stops and joins the threads. The stop line is left on.
+  /// Stops and joins the threads. The stop line is set once more.
   virtual ~Daemon() = default;
 };
 

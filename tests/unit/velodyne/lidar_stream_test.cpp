@@ -252,7 +252,8 @@ TEST(LidarStream, SaysHowWellItsClockIsKnown) {
   }
   EXPECT_EQ(sensor.stream().clock().state(), ClockState::pps_locked);
   EXPECT_LT(sensor.stream().clock().accuracy_ns(), 1000);
-  const std::int64_t late_by = sensor.stream().clock().status().offset_ns - (kEpoch - 100 * kSecond);
+  const std::int64_t late_by =
+      sensor.stream().clock().status().offset_ns - (kEpoch - 100 * kSecond);
   EXPECT_NEAR(static_cast<double>(late_by % kHourNs), 0, 1000) << "there is no delay in it";
 }
 

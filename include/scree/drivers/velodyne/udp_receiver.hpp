@@ -16,7 +16,7 @@ struct ReceivedDatagram {
   std::int64_t arrival_ns = 0;          ///< when the kernel took it in, wall clock
   std::uint32_t sender = 0;             ///< IPv4 address, host byte order
   std::uint16_t sender_port = 0;
-  bool truncated = false;               ///< it was longer than the buffer; the rest is lost
+  bool truncated = false;  ///< it was longer than the buffer; the rest is lost
 };
 
 /// Since the socket was opened.
