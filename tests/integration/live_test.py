@@ -42,7 +42,7 @@ class LiveTest(ProgramTest):
     def simulate(self):
         """A capture, and a configuration for its sensors on this computer."""
         capture = self.path("capture")
-        done = self.run_to_end(SCREE, "simulate", capture, "--seconds", "10", "--scene", "easy")
+        done = self.run_to_end(SCREE, "simulate", capture, "--seconds", "6", "--scene", "easy")
         self.assertEqual(done.returncode, 0, done.stderr)
         with open(os.path.join(capture, "scree.toml")) as file:
             robot = file.read()
