@@ -57,7 +57,7 @@ void Pipeline::detect_in_map() {
   map_detector_.detect(map.cloud(), found_);
   for (Obstacle& obstacle : found_) obstacle.center += map.origin();
   tracker_.update(
-      list_.stamp_ns, {found_.data(), found_.size()},
+      list_.stamp_ns, list_.pose.translation, {found_.data(), found_.size()},
       [&map](const Eigen::Vector3d& place) { return map.sight(place); }, list_.obstacles);
 }
 

@@ -27,7 +27,8 @@ bool may_be_same(const Obstacle& a, const Obstacle& b) {
 Tracker::Tracker(const TrackingSettings& settings, std::size_t max_tracks)
     : settings_(settings), tracks_(max_tracks), pairs_(16 * max_tracks), track_of_(max_tracks) {}
 
-void Tracker::update(std::int64_t stamp_ns, std::span<const Obstacle> found,
+void Tracker::update(std::int64_t stamp_ns, const Eigen::Vector3d& robot,
+                     std::span<const Obstacle> found,
                      const std::function<Sight(const Eigen::Vector3d&)>& sight,
                      FixedVector<Obstacle>& obstacles) {
   if (found.size() > track_of_.capacity()) {
@@ -81,7 +82,8 @@ void Tracker::update(std::int64_t stamp_ns, std::span<const Obstacle> found,
     }
   }
   for (Track& track : tracks_) {
-    if (!track.is_published || is_part(track)) continue;
+    const double away = (track.obstacle.center - robot).head<2>().norm();
+    if (!track.is_published || away > settings_.reach || is_part(track)) continue;
     track.obstacle.confidence = track.confidence();
     if (!obstacles.push_back(track.obstacle)) ++dropped_;
   }

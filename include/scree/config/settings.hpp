@@ -155,6 +155,7 @@ struct TrackingSettings {
   double appear = 0.5;
   double disappear = 0.35;
   double remember = 1.0;
+  double reach = 10;
 };
 
 /// The stages of the paper and ours beside them. There is one set for reconstructed clouds, one for

@@ -36,16 +36,18 @@ class TrackerTest : public testing::Test {
 protected:
   static constexpr std::size_t kMost = 16;
 
-  TrackingSettings settings_;
+  TrackingSettings settings_{.reach = 100};
   Tracker tracker_{settings_, kMost};
   FixedVector<Obstacle> list_{kMost};
   Sight sight_ = Sight::occupied;
+  Eigen::Vector3d robot_ = Eigen::Vector3d::Zero();
   std::int64_t now_ns_ = kStart;
 
   const FixedVector<Obstacle>& update(const std::vector<Obstacle>& found, int times = 1) {
     for (int i = 0; i < times; ++i) {
       tracker_.update(
-          now_ns_ += kList, found, [this](const Eigen::Vector3d&) { return sight_; }, list_);
+          now_ns_ += kList, robot_, found, [this](const Eigen::Vector3d&) { return sight_; },
+          list_);
     }
     return list_;
   }
@@ -251,10 +253,25 @@ TEST_F(TrackerTest, DropsAndCountsWhatFindsNoRoom) {
   many.resize(5);
   for (int i = 0; i < 3; ++i) {
     tracker_.update(
-        now_ns_ += kList, many, [](const Eigen::Vector3d&) { return Sight::occupied; }, small);
+        now_ns_ += kList, robot_, many, [](const Eigen::Vector3d&) { return Sight::occupied; },
+        small);
   }
   EXPECT_EQ(small.size(), 2U);
   EXPECT_GT(tracker_.dropped(), before);
+}
+
+TEST_F(TrackerTest, AnObstacleTooFarOffIsFollowedAndPublishedAtOnceWhenTheRobotIsNearEnough) {
+  const double reach = settings_.reach;
+  EXPECT_EQ(update({at(reach + 0.5, 0), at(0, -reach - 0.5)}, 10).size(), 0U);
+  robot_ = {1, 0, 0};
+  ASSERT_EQ(update({at(reach + 0.5, 0), at(0, -reach - 0.5)}).size(), 1U);
+  EXPECT_NEAR(list_[0].center.x(), reach + 0.5, 1e-9);
+  const std::int64_t id = list_[0].id;
+  robot_ = {0, 0, 0};
+  EXPECT_EQ(update({at(reach + 0.5, 0)}).size(), 0U);
+  robot_ = {1, 0, 0};
+  ASSERT_EQ(update({at(reach + 0.5, 0)}).size(), 1U);
+  EXPECT_EQ(list_[0].id, id);
 }
 
 // Were the time of the last finding ahead for hours, what is unseen would stay so long.
