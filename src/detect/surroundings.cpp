@@ -16,6 +16,8 @@ void Surroundings::build(PointView cloud, std::span<const float> heights, const 
   }
   sides_.assign(surface.columns() * surface.rows(), 0);
   visited_.assign(surface.columns() * surface.rows(), 0);
+  lowest_.resize(visited_.size());
+  highest_.resize(visited_.size());
   number_ = 0;
   for (std::size_t i = 0; i < edges.size(); ++i) {
     sides_[surface.cell_at(edges.points.x[i], edges.points.y[i])] |=
@@ -56,24 +58,37 @@ void Surroundings::measure(Cluster& cluster, std::span<const std::uint32_t> memb
                            const EdgePoints& edges, const GroundSurface& surface) {
   ++number_;
   double slopes = 0;
-  float cells = 0, rim = 0, through = 0;
+  float cells = 0, rim = 0, through = 0, spread = 0;
   for (const std::uint32_t i : members) {
     slopes += std::hypot(edges.slope_x[i], edges.slope_y[i]);
     if (is_amid_ground(edges.points.x[i], edges.points.y[i], surface)) ++through;
     const std::size_t cell = surface.cell_at(edges.points.x[i], edges.points.y[i]);
-    if (std::exchange(visited_[cell], number_) == number_) continue;
+    const float height = edges.height[i];
+    if (std::exchange(visited_[cell], number_) == number_) {
+      spread += std::max(lowest_[cell] - height, 0.0F) + std::max(height - highest_[cell], 0.0F);
+      lowest_[cell] = std::min(lowest_[cell], height);
+      highest_[cell] = std::max(highest_[cell], height);
+      continue;
+    }
+    lowest_[cell] = highest_[cell] = height;
     ++cells;
-    if (borders_on(cell, edges.height[i] > 0 ? below : above, surface.columns())) ++rim;
+    if (borders_on(cell, height > 0 ? below : above, surface.columns())) ++rim;
   }
-  constexpr float kAround = 0.3F;
-  float inside = 0, unseen = 0, around = 0, ground = 0;
+  constexpr float kAround = 0.3F, kFurtherAround = 0.6F;
+  float inside = 0, unseen = 0, around = 0, ground = 0, level_cells = 0, uneven = 0;
   const OrientedBox& box = cluster.box;
-  const float reach = std::hypot(box.length, box.width) / 2 + kAround, step = surface.cell_size();
+  const float reach = std::hypot(box.length, box.width) / 2 + kFurtherAround,
+              step = surface.cell_size();
   for (float y = box.center_y - reach; y <= box.center_y + reach; y += step) {
     for (float x = box.center_x - reach; x <= box.center_x + reach; x += step) {
       const float distance = box.distance(x, y);
-      if (distance > kAround) continue;
+      if (distance > kFurtherAround) continue;
       const std::size_t cell = surface.cell_at(x, y);
+      if (distance > 0 && surface.is_ground(cell)) {
+        ++level_cells;
+        uneven += surface.roughness(cell);
+      }
+      if (distance > kAround) continue;
       ++(distance > 0 ? around : inside);
       if (distance > 0 && surface.is_ground(cell)) ++ground;
       if (distance <= 0 && surface.points_in(cell) == 0) ++unseen;
@@ -87,6 +102,9 @@ void Surroundings::measure(Cluster& cluster, std::span<const std::uint32_t> memb
   features[unseen_share] = unseen / std::max(inside, 1.0F);
   features[ground_share] = ground / std::max(around, 1.0F);
   features[through_share] = through / static_cast<float>(members.size());
+  features[cell_points] = static_cast<float>(members.size()) / cells;
+  features[cell_spread] = spread / cells;
+  features[roughness] = uneven / std::max(level_cells, 1.0F);
 }
 
 }  // namespace scree

@@ -21,6 +21,9 @@ enum Feature : std::size_t {
   unseen_share,   ///< of the cells of its box: without a point
   through_share,  ///< of its points: with ground seen on all sides of it; tufts let light through
   ground_share,   ///< of the cells up to 0.3 m around its box: known to be ground
+  cell_points,    ///< mean number of points in its cells
+  cell_spread,    ///< mean height between the lowest and the highest point of its cells, metres
+  roughness,      ///< of the ground up to 0.6 m around: mean distance of its cells from the surface
   kFeatures
 };
 inline constexpr std::size_t kPaperFeatures = 5;

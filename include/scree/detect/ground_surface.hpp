@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -35,6 +36,8 @@ public:
 
   // The raster, row by row, for those who walk over it.
   bool is_ground(std::size_t cell) const { return ground_[cell] != 0; }
+  /// Of a cell that is ground: distance of its points' median from the surface, metres.
+  float roughness(std::size_t cell) const { return std::abs(median_[cell] - smooth_[cell]); }
   std::size_t columns() const { return columns_; }
   std::size_t rows() const { return rows_; }
   float cell_size() const { return cell_; }

@@ -13,7 +13,11 @@ namespace scree {
 class Surroundings {
 public:
   explicit Surroundings(std::size_t max_cells)
-      : sides_(max_cells), visited_(max_cells), ground_seen_(4 * max_cells) {}
+      : sides_(max_cells),
+        visited_(max_cells),
+        lowest_(max_cells),
+        highest_(max_cells),
+        ground_seen_(4 * max_cells) {}
 
   /// Notes where the ground itself was seen, and in which cells something stands above it or lies
   /// below it.
@@ -35,6 +39,7 @@ private:
 
   FixedVector<std::uint8_t> sides_;
   FixedVector<std::uint32_t> visited_;     // number of the last cluster that counted the cell
+  FixedVector<float> lowest_, highest_;    // of that cluster's heights in it
   FixedVector<std::uint8_t> ground_seen_;  // in each quarter of a cell, row by row
   std::uint32_t number_ = 0;
 };

@@ -52,6 +52,21 @@ TEST(Surroundings, LightPassesThroughATuftAndNotThroughARock) {
   }));
   EXPECT_LT(rock[through_share], 0.1);
   EXPECT_GT(tuft[through_share], 0.5);
+  EXPECT_LT(rock[cell_spread], 0.01) << "a level top";
+  EXPECT_GT(tuft[cell_spread], 0.1) << "blades of 0.08 to 0.38 m in one cell";
+  EXPECT_GT(tuft[cell_points], 1.3 * rock[cell_points]);
+}
+
+TEST(Surroundings, MeasuresHowUnevenTheGroundAroundIs) {
+  const auto rock_on = [](float unevenness) {
+    return features_of(ground_with([=](float x, float y, float chance) {
+      return inside(x, y) ? 0.4F : unevenness * (chance - 0.5F);
+    }));
+  };
+  EXPECT_LT(rock_on(0)[roughness], 1e-4);
+  const float uneven = rock_on(0.05F)[roughness];
+  EXPECT_GT(uneven, 0.001);
+  EXPECT_NEAR(rock_on(0.1F)[roughness] / uneven, 2, 0.4);
 }
 
 TEST(Surroundings, MeasuresTheBoxAndTheSlope) {
