@@ -41,9 +41,9 @@ std::vector<Rung> ladder() {
   detect.cluster_tolerance = 0.2;
   detect.min_cluster_size = 4;
   climb("+ bodies instead of edge points");
-  rung.inputs = kFeatures;
+  rung.inputs = kCloudFeatures;
   climb("+ all features");
-  rungs.push_back({"beside it: as scree.toml", DetectSettings::for_cloud(), kFeatures});
+  rungs.push_back({"beside it: as scree.toml", DetectSettings::for_cloud(), kCloudFeatures});
   detect.cluster_method = ClusterMethod::supervoxel;
   detect.voxel_size = 0.06;
   detect.seed_distance = 0.12;

@@ -132,7 +132,7 @@ void study_classifiers(const StudyTask& task) {
       throw Failure("the detector found no cluster to train on, see its settings");
     }
     TrainingSettings settings;
-    settings.inputs = ways[w].detect.uses_surface() ? kFeatures : kPaperFeatures;
+    settings.inputs = ways[w].detect.uses_surface() ? kCloudFeatures : kPaperFeatures;
     const Network trained =
         train_network(parts.training.samples, parts.validation.samples, settings).network;
     const double least = ways[w].detect.min_confidence;
