@@ -11,6 +11,8 @@
 #include <boost/geometry/geometries/point_xy.hpp>
 #include <boost/geometry/geometries/polygon.hpp>
 #include <boost/geometry/strategies/strategies.hpp>
+#include <cmath>
+#include <limits>
 
 namespace scree {
 namespace {
@@ -66,6 +68,26 @@ double intersection_over_union(const Outline& a, const Outline& b) {
   }
   const double intersection = geometry::area(shared);
   return areas - intersection > 0 ? intersection / (areas - intersection) : 0;
+}
+
+double least_width(const Outline& polygon) {
+  // One of the lines lies along an edge of the convex hull, which joins two of the corners.
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (polygon[i] == polygon[j]) continue;
+      const Eigen::Vector2d along = (polygon[i] - polygon[j]).normalized();
+      double low = std::numeric_limits<double>::infinity();
+      double high = -low;
+      for (const Eigen::Vector2d& corner : polygon) {
+        const double aside = along.x() * corner.y() - along.y() * corner.x();
+        low = std::min(low, aside);
+        high = std::max(high, aside);
+      }
+      least = std::min(least, high - low);
+    }
+  }
+  return std::isfinite(least) ? least : 0;
 }
 
 }  // namespace scree

@@ -19,4 +19,8 @@ double distance_to(const Outline& polygon, const Eigen::Vector2d& point);
 /// area. @pre outlines of uncrossed(), or rectangles
 double intersection_over_union(const Outline& a, const Outline& b);
 
+/// Between the two parallel lines that stand closest and hold the polygon between them, metres. A
+/// ditch is as wide as a robot that drives over it sees it. 0 for less than three corners.
+double least_width(const Outline& polygon);
+
 }  // namespace scree

@@ -32,6 +32,9 @@ private:
   double a_minute(double angle) const { return seconds > 0 ? angle / seconds * 60 : 0; }
 };
 
+/// The turn about z and the shift that lay one pose onto another by position and yaw.
+Pose laid_onto(const Pose& pose, const Pose& other);
+
 /// Lays the first reported pose onto the true one by position and yaw, and compares the others.
 PoseError pose_error(const std::vector<PosePair>& poses);
 

@@ -64,17 +64,19 @@ void count(ScoringResult& result, const Comparison& comparison) {
 /// How one obstacle fared, list by list.
 struct Story {
   const TrueObstacle* obstacle = nullptr;
+  std::optional<double> asked;   // range when it was asked for first
   std::optional<double> first;   // range at the first right match
   std::optional<double> stayed;  // range at which the right matches began that have not ended
 
-  void tell(const Comparison::Asked& asked) {
-    obstacle = asked.obstacle;
-    if (!asked.is_right) {
+  void tell(const Comparison::Asked& now) {
+    obstacle = now.obstacle;
+    if (!asked) asked = now.range;
+    if (!now.is_right) {
       stayed.reset();
       return;
     }
-    if (!first) first = asked.range;
-    if (!stayed) stayed = asked.range;
+    if (!first) first = now.range;
+    if (!stayed) stayed = now.range;
   }
 };
 
@@ -121,6 +123,7 @@ void Scorer::add(const Truth& truth, std::span<const ObstacleList> lists) {
                                       ? result_.positive_warning
                                       : result_.negative_warning;
       ++warning.obstacles;
+      warning.asked.push_back(*story.asked);
       if (story.first) warning.first.push_back(*story.first);
       if (story.stayed) warning.stayed.push_back(*story.stayed);
     }

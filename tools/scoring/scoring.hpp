@@ -17,6 +17,7 @@ namespace scree {
 /// plane, one for each obstacle that was.
 struct WarningDistances {
   std::size_t obstacles = 0;   ///< asked for at least once
+  std::vector<double> asked;   ///< when it was asked for first: no match counts before that
   std::vector<double> first;   ///< at the first right match
   std::vector<double> stayed;  ///< at the first right match from which on every list that was asked
                                ///< for the obstacle had it right

@@ -91,5 +91,16 @@ TEST(Footprints, AnOutlineWithoutAreaIsEmpty) {
   EXPECT_TRUE(uncrossed({{0, 0}, {1, 1}, {2, 2}}).empty());
 }
 
+TEST(Footprints, WidthIsTheLeast) {
+  EXPECT_NEAR(least_width(rectangle(0, 0, 4, 1)), 1, 1e-12);
+  Outline turned = rectangle(0, 0, 4, 1);
+  for (Eigen::Vector2d& corner : turned) corner = Eigen::Rotation2Dd(0.7) * corner;
+  EXPECT_NEAR(least_width(turned), 1, 1e-12);
+  const Outline notched = {{0, 0}, {3, 0}, {3, 3}, {2, 3}, {2, 1}, {1, 1}, {1, 3}, {0, 3}};
+  EXPECT_NEAR(least_width(notched), 3, 1e-12);
+  EXPECT_EQ(least_width({}), 0);
+  EXPECT_EQ(least_width({{1, 1}, {1, 1}}), 0);
+}
+
 }  // namespace
 }  // namespace scree

@@ -257,6 +257,7 @@ ScoringResult drive(const std::string& right, Pose odom = {}) {
 
 TEST(Scoring, WarningDistanceIsThatOfTheFirstRightMatch) {
   const ScoringResult result = drive("..-+.+++");
+  EXPECT_THAT(result.positive_warning.asked, ElementsAre(10));
   EXPECT_THAT(result.positive_warning.first, ElementsAre(7));
   EXPECT_THAT(result.positive_warning.stayed, ElementsAre(5));
   EXPECT_EQ(result.positive_warning.obstacles, 1U);
