@@ -14,11 +14,6 @@
 namespace scree {
 namespace {
 
-/// Seconds since the capture's begin.
-double since_start(std::int64_t t_ns) {
-  return static_cast<double>(t_ns - kDriveStartNs) * 1e-9;
-}
-
 /// What the IMU answers while its driver sets it up.
 void greet(SerialPort& port, std::int64_t t_ns) {
   constexpr std::int64_t kPause = 50'000'000;

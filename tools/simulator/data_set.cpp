@@ -1,14 +1,12 @@
 #include "simulator/data_set.hpp"
 
 #include <array>
-#include <atomic>
 #include <cmath>
-#include <mutex>
-#include <thread>
 
+#include "scoring/pose_error.hpp"
 #include "scree/app/pipeline.hpp"
-#include "scree/core/rotation.hpp"
 #include "simulator/drive.hpp"
+#include "simulator/parallel.hpp"
 #include "simulator/scene.hpp"
 #include "simulator/worlds.hpp"
 
@@ -82,13 +80,12 @@ private:
 std::vector<TerrainFeature> as_believed(const std::vector<TerrainFeature>& features,
                                         const Pose& truth, const Pose& believed,
                                         const Eigen::Vector3d& origin) {
-  const double turn = yaw_of(believed.rotation) - yaw_of(truth.rotation);
-  const Eigen::Rotation2Dd rotation(turn);
-  const Eigen::Vector2d shift = (believed.translation - origin).head<2>() -
-                                rotation * Eigen::Vector2d(truth.translation.head<2>());
+  const Pose to_believed = laid_onto(truth, believed);
   std::vector<TerrainFeature> moved = features;
   for (TerrainFeature& feature : moved) {
-    for (Eigen::Vector2d& corner : feature.footprint) corner = rotation * corner + shift;
+    for (Eigen::Vector2d& corner : feature.footprint) {
+      corner = (to_believed * Eigen::Vector3d(corner.x(), corner.y(), 0) - origin).head<2>();
+    }
   }
   return moved;
 }
@@ -105,15 +102,13 @@ public:
     drawn.seconds = 10;
     drawn.at_rest = seed % 12 == 11;
     const Drive drive(drawn);
-    settings_.lidar = drive.robot.lidar;
-    settings_.imu = drive.robot.imu;
-    settings_.encoder = drive.robot.encoder;
-    Pipeline pipeline(settings_, Detector(settings_.detect_map, Network()),
-                      Detector(settings_.detect_sweep, Network()));
+    const Settings settings = with_sensors_of(drive.robot, settings_);
+    Pipeline pipeline(settings, Detector(settings.detect_map, Network()),
+                      Detector(settings.detect_sweep, Network()));
     DriveFeed feed(drive);
-    Sweep sweep(static_cast<std::size_t>(settings_.map.max_points));
+    Sweep sweep(static_cast<std::size_t>(settings.map.max_points));
     LabelledClusters all;
-    for (int i = 1; feed.next(sweep, pipeline.sensors()); ++i) {
+    for (int i = 1; feed.next(sweep, {&pipeline.sensors()}); ++i) {
       const ObstacleList& list = pipeline.process(sweep);
       if (i % kEvery != 0) continue;
       const auto features = as_believed(drive.terrain.features(), drive.motion.base(sweep.end_ns),
@@ -127,27 +122,15 @@ private:
   Settings settings_;
 };
 
-/// In as many threads as there are processors; the order is that of the seeds all the same.
+/// In the order of the seeds.
 template <class From>
 LabelledClusters gather(const Settings& settings, SeedRange seeds,
                         const std::function<void(std::size_t)>& progress) {
   std::vector<LabelledClusters> parts(seeds.count);
-  std::atomic<std::size_t> next{0};
-  std::size_t done = 0;
-  std::mutex mutex;
-  const auto work = [&] {
-    From from(settings);
-    for (std::size_t i = next++; i < seeds.count; i = next++) {
-      parts[i] = from(seeds.first + i);
-      const std::scoped_lock lock(mutex);
-      progress(++done);
-    }
+  const auto make_work = [&] {
+    return [&, from = From(settings)](std::size_t i) mutable { parts[i] = from(seeds.first + i); };
   };
-  {
-    std::vector<std::jthread> threads;
-    const unsigned processors = std::max(std::thread::hardware_concurrency(), 1U);
-    for (unsigned i = 0; i < processors; ++i) threads.emplace_back(work);
-  }
+  in_parallel(seeds.count, make_work, progress);
   LabelledClusters all;
   for (const LabelledClusters& part : parts) all += part;
   return all;

@@ -137,8 +137,10 @@ SimulatedEncoder make_encoder(const Drive& drive) {
 
 }  // namespace
 
-DriveFeed::DriveFeed(const Drive& drive)
+DriveFeed::DriveFeed(const Drive& drive, const Faults& faults)
     : drive_(drive),
+      faults_(faults),
+      losses_(drive.settings.seed, 0x1055),
       caster_(drive.terrain),
       lidar_(drive.terrain, caster_, draw_lidar(drive.settings, drive.robot.lidar), drive.motion,
              drive.robot.lidar.mount(), kDriveStartNs, drive.settings.seed),
@@ -147,12 +149,14 @@ DriveFeed::DriveFeed(const Drive& drive)
       encoder_(make_encoder(drive)),
       observer_(drive.terrain, drive.motion, truth_),
       next_sample_(imu_.next()),
+      imu_noise_(drive.settings.seed, faults.imu_corruption),
+      imu_stream_(drive.robot.imu, [this](const ImuSample& sample) { decoded_.push_back(sample); }),
       encoder_gain_(1 + draw_encoder(drive.settings).scale_error),
       encoder_ns_(kDriveStartNs - kEncoderStepNs) {
   truth_.obstacles = true_obstacles(drive.terrain);
 }
 
-bool DriveFeed::next(Sweep& sweep, SyncBuffer& sensors) {
+bool DriveFeed::next(Sweep& sweep, std::initializer_list<SyncBuffer*> sensors) {
   const double turns = std::round(drive_.settings.seconds * drive_.settings.rate_hz);
   if (turns_ >= turns) return false;
   sweep.clear();
@@ -166,37 +170,54 @@ bool DriveFeed::next(Sweep& sweep, SyncBuffer& sensors) {
           time -= static_cast<std::int32_t>(last_ns_ - begin_ns_);
         sweep.end_ns = last_ns_;
         begin_ns_ = shot.t_ns;
-        feed_until(sweep.end_ns + 2 * kEncoderStepNs, sensors);
+        feed_imu(sweep.end_ns + 2 * kEncoderStepNs, sensors);
+        feed_encoder(sweep.end_ns + 2 * kEncoderStepNs, sensors);
         return true;
       }
       last_ns_ = shot.t_ns;
-      if (shot.range <= 0) continue;
+      if (shot.range <= 0 || is_lost_) continue;
       const Eigen::Vector3f point = lidar_.point_of(shot_).cast<float>();
       sweep.points.push_back(point.x(), point.y(), point.z(), shot.reflectivity);
       sweep.time_ns.push_back(static_cast<std::int32_t>(shot.t_ns - begin_ns_));
     }
     lidar_.advance();
     observer_.watch(lidar_);
+    is_lost_ = losses_.chance(faults_.packet_loss);
     shot_ = 0;
   }
 }
 
-void DriveFeed::feed_until(std::int64_t t_ns, SyncBuffer& sensors) {
+void DriveFeed::feed_imu(std::int64_t t_ns, std::initializer_list<SyncBuffer*> sensors) {
   for (; next_sample_.t_ns < t_ns; next_sample_ = imu_.next()) {
-    sensors.put(ImuSample{.t_ns = next_sample_.t_ns,
+    if (faults_.imu_gap.holds(since_start(next_sample_.t_ns))) continue;
+    decoded_.clear();
+    if (faults_.imu_corruption > 0) {
+      imu_bytes_.clear();
+      for (const std::uint8_t byte : mt_data2(next_sample_)) imu_noise_.pass(byte, imu_bytes_);
+      imu_stream_.take(imu_bytes_, next_sample_.t_ns);
+    } else {
+      decoded_.push_back({.t_ns = next_sample_.t_ns,
                           .has_orientation = true,
                           .has_rate = true,
                           .has_acceleration = true,
                           .orientation = next_sample_.orientation,
                           .rate = next_sample_.rate_of_turn,
                           .acceleration = next_sample_.acceleration});
+    }
+    for (SyncBuffer* each : sensors) {
+      for (const ImuSample& sample : decoded_) each->put(sample);
+    }
   }
+}
+
+void DriveFeed::feed_encoder(std::int64_t t_ns, std::initializer_list<SyncBuffer*> sensors) {
   for (; encoder_ns_ < t_ns; encoder_ns_ += kEncoderStepNs) {
     encoder_.frame(encoder_ns_);
+    if (faults_.encoder_gap.holds(since_start(encoder_ns_))) continue;
     EncoderSample sample;
     sample.t_ns = encoder_ns_;
     sample.distance = sample.value = encoder_.turned() * encoder_gain_;
-    sensors.put(sample);
+    for (SyncBuffer* each : sensors) each->put(sample);
   }
 }
 

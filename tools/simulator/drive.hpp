@@ -1,11 +1,14 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
+#include <initializer_list>
+#include <vector>
 
 #include "scoring/truth.hpp"
 #include "scree/core/sweep.hpp"
+#include "scree/drivers/xsens/imu_stream.hpp"
 #include "scree/sync/sync_buffer.hpp"
+#include "simulator/byte_noise.hpp"
 #include "simulator/encoder.hpp"
 #include "simulator/faults.hpp"
 #include "simulator/imu.hpp"
@@ -35,6 +38,10 @@ struct CaptureSettings {
 
 /// Host's time at which every drive begins: 28 August 2020, 11:02 UTC.
 inline constexpr std::int64_t kDriveStartNs = 1598612520'000000000;
+/// Seconds since then.
+constexpr double since_start(std::int64_t t_ns) {
+  return static_cast<double>(t_ns - kDriveStartNs) * 1e-9;
+}
 
 SimulatedLidarSettings draw_lidar(const CaptureSettings& settings, const LidarSettings& mounted);
 SimulatedImuSettings draw_imu(const CaptureSettings& settings);
@@ -69,21 +76,29 @@ private:
 };
 
 /// The sensors of a drive without the bytes between: sweeps and samples as good decoders and
-/// perfect clocks would give them.
+/// perfect clocks would give them, less what faults take away. Only where the IMU's bytes are
+/// corrupted do its samples go through them and their decoder.
 class DriveFeed {
 public:
-  /// Keeps a reference to the drive.
-  explicit DriveFeed(const Drive& drive);
+  static constexpr Faults kNoFaults{.packet_loss = 0, .imu_gap = {}, .encoder_gap = {}};
 
-  /// Fills the next sweep, and puts the samples that cover it. False when the drive is over.
-  bool next(Sweep& sweep, SyncBuffer& sensors);
+  /// Keeps a reference to the drive.
+  /// @param faults instead of those of the drive's settings
+  explicit DriveFeed(const Drive& drive, const Faults& faults = kNoFaults);
+
+  /// Fills the next sweep, and puts the samples that cover it into each buffer. False when the
+  /// drive is over.
+  bool next(Sweep& sweep, std::initializer_list<SyncBuffer*> sensors);
   /// What can be asked for after each sweep so far.
   const Truth& truth() const { return truth_; }
 
 private:
-  void feed_until(std::int64_t t_ns, SyncBuffer& sensors);
+  void feed_imu(std::int64_t t_ns, std::initializer_list<SyncBuffer*> sensors);
+  void feed_encoder(std::int64_t t_ns, std::initializer_list<SyncBuffer*> sensors);
 
   const Drive& drive_;
+  Faults faults_;
+  Random losses_;
   RayCaster caster_;
   SimulatedLidar lidar_;
   SimulatedImu imu_;
@@ -91,10 +106,15 @@ private:
   Truth truth_;
   Observer observer_;
   ImuMessage next_sample_;
+  ByteNoise imu_noise_;
+  std::vector<std::uint8_t> imu_bytes_;
+  std::vector<ImuSample> decoded_;
+  xsens::ImuStream imu_stream_;
   double encoder_gain_;  ///< of its scale's error
   std::int64_t encoder_ns_;
   double turns_ = 0;                               // handed out
   std::size_t shot_ = SimulatedLidar::kMostShots;  // the next of the packet
+  bool is_lost_ = false;                           // the packet
   std::int64_t begin_ns_ = kDriveStartNs, last_ns_ = kDriveStartNs;
 };
 

@@ -41,7 +41,7 @@ SerialPort::SerialPort(PcapWriter& file, int baud, std::int64_t burst_ns, std::u
       byte_ns_(1e10 / baud),
       burst_ns_(burst_ns),
       random_(seed, 0x5E41),
-      disturbances_(seed, 0x5E42) {}
+      noise_(seed) {}
 
 void SerialPort::send(std::int64_t sent_ns, std::span<const std::uint8_t> bytes) {
   read_until(sent_ns);
@@ -55,18 +55,9 @@ void SerialPort::send(std::int64_t sent_ns, std::span<const std::uint8_t> bytes)
 }
 
 void SerialPort::receive(std::int64_t t_ns, std::uint8_t byte) {
-  if (!disturbances_.chance(corrupted_share_)) return pending_.push_back({t_ns, byte});
-  switch (disturbances_.index(3)) {
-    case 0:
-      pending_.push_back({t_ns, static_cast<std::uint8_t>(byte ^ 1U << disturbances_.index(8))});
-      break;
-    case 1:
-      pending_.push_back({t_ns, byte});
-      pending_.push_back({t_ns, static_cast<std::uint8_t>(disturbances_.next())});
-      break;
-    default:
-      break;
-  }
+  arrived_.clear();
+  noise_.pass(byte, arrived_);
+  for (const std::uint8_t each : arrived_) pending_.push_back({t_ns, each});
 }
 
 void SerialPort::read_until(std::int64_t t_ns) {

@@ -10,6 +10,7 @@
 #include "scree/capture/pcap_writer.hpp"
 #include "scree/config/settings.hpp"
 #include "scree/core/random.hpp"
+#include "simulator/byte_noise.hpp"
 #include "simulator/encoder.hpp"
 #include "simulator/lidar.hpp"
 
@@ -44,9 +45,8 @@ public:
   /// @param burst_ns every so long an USB adapter hands on what it has; 0: as it comes
   SerialPort(PcapWriter& file, int baud, std::int64_t burst_ns, std::uint64_t seed);
 
-  /// From now on this share of bytes has a bit flipped, is lost, or is followed by one that nobody
-  /// sent, each as often.
-  void corrupt(double share) { corrupted_share_ = share; }
+  /// From now on this share of bytes is disturbed.
+  void corrupt(double share) { noise_.set_share(share); }
   /// @param sent_ns when the device began to send; not before that of the message before
   void send(std::int64_t sent_ns, std::span<const std::uint8_t> bytes);
   /// Reads the rest.
@@ -59,8 +59,9 @@ private:
   PcapWriter& file_;
   double byte_ns_;
   std::int64_t burst_ns_;
-  Random random_, disturbances_;
-  double corrupted_share_ = 0;
+  Random random_;
+  ByteNoise noise_;
+  std::vector<std::uint8_t> arrived_;  // of one byte
   struct Pending {
     std::int64_t t_ns;
     std::uint8_t byte;

@@ -75,6 +75,13 @@ Robot draw_robot(std::uint64_t seed) {
   return robot;
 }
 
+Settings with_sensors_of(const Robot& robot, Settings settings) {
+  settings.lidar = robot.lidar;
+  settings.imu = robot.imu;
+  settings.encoder = robot.encoder;
+  return settings;
+}
+
 Result<void> write_robot(const std::filesystem::path& file, const Robot& robot) {
   const auto& [lidar, imu, encoder] = robot;
   std::ofstream stream(file, std::ios::binary);

@@ -23,6 +23,9 @@ struct Robot {
 /// signal of the encoder.
 Robot draw_robot(std::uint64_t seed);
 
+/// These settings with the robot's sensors in place of theirs.
+Settings with_sensors_of(const Robot& robot, Settings settings);
+
 /// Writes scree.toml with the three sensors' tables.
 Result<void> write_robot(const std::filesystem::path& file, const Robot& robot);
 

@@ -24,12 +24,10 @@ public:
     settings.cell = 0.06;
     settings.margin = 13;
     const Drive drive(settings);
-    mapped_.lidar = drive.robot.lidar;
-    mapped_.imu = drive.robot.imu;
-    mapped_.encoder = drive.robot.encoder;
+    mapped_ = with_sensors_of(drive.robot, mapped_);
     DriveFeed feed(drive);
     const auto sensors = std::make_unique<SyncBuffer>();
-    for (Sweep sweep(1 << 15); feed.next(sweep, *sensors);) {
+    for (Sweep sweep(1 << 15); feed.next(sweep, {sensors.get()});) {
       Turn& turn = turns_.emplace_back();
       turn.sweep = Sweep(sweep.points.size());
       turn.sweep.end_ns = sweep.end_ns;
@@ -60,8 +58,7 @@ public:
     Mapper mapper(settings);
     const auto sensors = std::make_unique<SyncBuffer>();
     const auto is_silent = [&](std::int64_t t_ns) {
-      const double t = static_cast<double>(t_ns - kDriveStartNs) * 1e-9;
-      return t > silence.begin && t < silence.end;
+      return since_start(t_ns) > silence.begin && since_start(t_ns) < silence.end;
     };
     Errors errors;
     Eigen::Quaterniond to_world;
