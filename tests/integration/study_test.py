@@ -1,5 +1,6 @@
 """scree study as a program, with tiny settings: python3 study_test.py SCREE [TEST ...]"""
 
+import csv
 import os
 import struct
 import subprocess
@@ -88,6 +89,27 @@ class StudyTest(unittest.TestCase):
 
     def test_detection(self):
         self.study("detection", "detection.txt", "detection.png", "detection-sweeps.png")
+
+    def test_drives(self):
+        said = self.scree("study", "drives", "--out", self.folder, "--seeds", "1",
+                          "--seconds", "2").stdout  # fmt: skip
+        scenes = ["easy", "rolling", "rough", "crater", "ditch", "grass", "mixed"]
+        with open(os.path.join(self.folder, "drives.txt")) as file:
+            text = file.read()
+        self.assertIn(text, said)
+        for goal in ("f1", "coverage", "drift_largest", "yaw_largest", "map_rms_m"):
+            self.assertRegex(text, rf"(?m)^{goal} +[<>]= \S+ +\d\S* +\w+ +(not )?met")
+        self.assertRegex(text, r"cost_of_faults .* not measured")  # too short for faults
+        with open(os.path.join(self.folder, "drives.csv"), newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual([row["scene"] for row in rows], scenes)
+        for row in rows:
+            self.assertEqual(float(row["coverage"]), 1)
+            self.assertTrue(0 <= float(row["f1_single_sweeps"]) <= 1)
+            self.assertGreater(float(row["map_points"]), 1000)
+            self.assertLess(float(row["map_rms_m"]), 0.1)
+            self.assertEqual(row["f1_with_faults"], "")
+        self.check_png(os.path.join(self.folder, "drives.png"))
 
     def test_hardly_any_points_are_no_crash(self):
         for name in ("training", "clustering", "seed-distance", "stages", "result", "detection"):

@@ -21,7 +21,7 @@ struct Study {
   void (*run)(const StudyTask&);
 };
 
-constexpr std::array<Study, 8> kStudies = {{
+constexpr std::array<Study, 9> kStudies = {{
     {"training", "Levenberg-Marquardt against back-propagation (fig. 7)", 10, study_training},
     {"clustering", "plain Euclidean against super-voxel clustering (fig. 14, 16)", 20,
      study_clustering},
@@ -32,6 +32,8 @@ constexpr std::array<Study, 8> kStudies = {{
      study_classifiers},
     {"changes", "what each change to the paper's method brought", 24, study_changes},
     {"detection", "detection and kind together, clouds and single sweeps", 65, study_detection},
+    {"drives", "simulated drives through every scene against the goals; seeds are those of a scene",
+     2, study_drives},
 }};
 
 /// Beyond the seeds of `scree train`, so that no study meets a terrain that weights came from.
@@ -42,6 +44,7 @@ struct Options {
   std::string out;
   std::size_t seeds = 0, training = 40, points = CloudSettings().points;
   std::uint64_t seed = kFirstSeed;
+  double seconds = 15;
 };
 
 std::string listing() {
@@ -67,6 +70,7 @@ void run(const Options& options) {
   if (failed) throw Failure("cannot make the folder " + options.out + ": " + failed.message());
   task.training = options.training;
   task.points = options.points;
+  task.seconds = options.seconds;
   for (const Study& study : kStudies) {
     if (study.name != options.name) continue;
     task.seeds = {options.seed, options.seeds > 0 ? options.seeds : study.seeds};
@@ -117,11 +121,16 @@ std::vector<LabelledClusters> label_worlds(
   return all;
 }
 
-void write_table(const StudyTask& task, const std::string& name, const std::string& text) {
+void write_text(const StudyTask& task, const std::string& name, const std::string& text) {
   std::ofstream stream(task.out / name, std::ios::binary);
   stream << text << std::flush;
   if (!stream) throw Failure("cannot write " + (task.out / name).string());
-  fmt::print("{}\nwrote {}\n", text, (task.out / name).string());
+  fmt::print("wrote {}\n", (task.out / name).string());
+}
+
+void write_table(const StudyTask& task, const std::string& name, const std::string& text) {
+  fmt::print("{}\n", text);
+  write_text(task, name, text);
 }
 
 void write_picture(const StudyTask& task, const std::string& name, Drawing& drawing) {
@@ -150,6 +159,9 @@ void add_study(CLI::App& app) {
   command
       ->add_option("--points", options->points, "of each cloud, where a study does not vary them")
       ->check(CLI::Range(std::size_t{1000}, std::size_t{1} << 20U))
+      ->capture_default_str();
+  command->add_option("--seconds", options->seconds, "of each drive, where a study drives")
+      ->check(CLI::Range(1.0, 3600.0))
       ->capture_default_str();
   command->callback([options] { run(*options); });
 }

@@ -24,6 +24,7 @@ struct StudyTask {
   SeedRange seeds;           ///< terrains that nothing was trained on
   std::size_t training = 0;  ///< terrains to train on, where a study trains
   std::size_t points = 0;    ///< of a cloud
+  double seconds = 0;        ///< of a drive
 };
 
 /// The detector's settings under a name.
@@ -47,7 +48,8 @@ std::vector<LabelledClusters> label_worlds(
     std::span<Detector> detectors, const std::function<CloudWorld(std::uint64_t seed)>& world_of,
     const SeedRange& seeds, const std::string& what);
 
-/// Write into the task's folder and say so on stdout. Throw Failure.
+/// Write into the task's folder and say so on stdout, a table with its text. Throw Failure.
+void write_text(const StudyTask& task, const std::string& name, const std::string& text);
 void write_table(const StudyTask& task, const std::string& name, const std::string& text);
 void write_picture(const StudyTask& task, const std::string& name, Drawing& drawing);
 
@@ -60,5 +62,6 @@ void study_result(const StudyTask& task);
 void study_classifiers(const StudyTask& task);
 void study_changes(const StudyTask& task);
 void study_detection(const StudyTask& task);
+void study_drives(const StudyTask& task);
 
 }  // namespace scree::cli
