@@ -131,9 +131,10 @@ class RecordTest(ProgramTest):
 
     def test_missing_sensors_are_waited_for_and_said(self):
         self.mti.port = self.path("elsewhere")
-        process = self.record("--seconds", "1.5")
-        _, said = process.communicate(timeout=PATIENCE)
-        self.assertEqual(process.returncode, 1, said)
+        done = self.run_to_end(SCREE, "record", self.recording, "--config", self.config,
+                               "--seconds", "1.5")  # fmt: skip
+        said = done.stderr
+        self.assertEqual(done.returncode, 1, said)
         self.assertIn("imu is not there: is the IMU plugged in?", said)
         self.assertIn("vcan0", said)
         self.assertIn("nothing came from any sensor", said.splitlines()[-1])
