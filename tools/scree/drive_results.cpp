@@ -22,9 +22,7 @@ struct DriveResult {
 };
 
 Pipeline make_pipeline(const Settings& settings, const StudyTask& task) {
-  auto pipeline = Pipeline::make(settings, task.config_folder);
-  if (!pipeline) throw Failure(pipeline.error().message);
-  return *std::move(pipeline);
+  return value_or_fail(Pipeline::make(settings, task.config_folder));
 }
 
 ObstacleList copy_of(const ObstacleList& list) {
