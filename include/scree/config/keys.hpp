@@ -229,8 +229,7 @@ void for_each_key(AnySettings& settings, Visit&& visit) {
       "an obstacle that is not found any more stays this long, unless its place was seen empty");
   key("reach", track.reach, "m", 1, 100,
       "an obstacle is published within this distance of the robot: farther off the lidar's rings "
-      "lie "
-      "too far apart to tell it from a slope, so there it is followed only");
+      "lie too far apart to tell it from a slope, so there it is followed only");
 
   table = "lcm";
   key("url", settings.lcm.url, "", 0, 0,
