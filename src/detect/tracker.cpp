@@ -4,17 +4,10 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "scree/detect/pieces.hpp"
+
 namespace scree {
 namespace {
-
-/// Of a place from the box of an obstacle in the plane; 0 inside.
-double distance_to_box(const Obstacle& obstacle, const Eigen::Vector3d& place) {
-  const Eigen::Vector2d to = (place - obstacle.center).head<2>();
-  const double cosine = std::cos(obstacle.yaw), sine = std::sin(obstacle.yaw);
-  const double along = std::abs(cosine * to.x() + sine * to.y()) - obstacle.extent.x() / 2;
-  const double across = std::abs(cosine * to.y() - sine * to.x()) - obstacle.extent.y() / 2;
-  return std::hypot(std::max(along, 0.0), std::max(across, 0.0));
-}
 
 /// Whether two boxes may be one obstacle seen twice: the middle of one lies in the other, nearly.
 bool may_be_same(const Obstacle& a, const Obstacle& b) {
@@ -25,7 +18,11 @@ bool may_be_same(const Obstacle& a, const Obstacle& b) {
 }  // namespace
 
 Tracker::Tracker(const TrackingSettings& settings, std::size_t max_tracks)
-    : settings_(settings), tracks_(max_tracks), pairs_(16 * max_tracks), track_of_(max_tracks) {}
+    : settings_(settings),
+      tracks_(max_tracks),
+      pairs_(16 * max_tracks),
+      track_of_(max_tracks),
+      published_(max_tracks) {}
 
 void Tracker::update(std::int64_t stamp_ns, const Eigen::Vector3d& robot,
                      std::span<const Obstacle> found,
@@ -81,24 +78,17 @@ void Tracker::update(std::int64_t stamp_ns, const Eigen::Vector3d& robot,
       if (track.is_published && track.obstacle.id == 0) track.obstacle.id = next_id_++;
     }
   }
-  for (Track& track : tracks_) {
-    const double away = (track.obstacle.center - robot).head<2>().norm();
-    if (!track.is_published || away > settings_.reach || is_part(track)) continue;
-    track.obstacle.confidence = track.confidence();
-    if (!obstacles.push_back(track.obstacle)) ++dropped_;
+  published_.clear();
+  for (const Track& track : tracks_) {
+    if (!track.is_published) continue;
+    published_.push_back(track.obstacle);
+    published_.back().confidence = track.confidence();
   }
-}
-
-/// Whether the middle of a track lies in or next to a much larger obstacle of its kind: shadows and
-/// the gaps between rings break pieces off.
-bool Tracker::is_part(const Track& track) const {
-  constexpr double kBeside = 0.3;  // metres
-  constexpr std::uint32_t kLarger = 3;
-  return std::any_of(tracks_.begin(), tracks_.end(), [&](const Track& other) {
-    return other.is_published && other.obstacle.kind == track.obstacle.kind &&
-           other.obstacle.points > kLarger * track.obstacle.points &&
-           distance_to_box(other.obstacle, track.obstacle.center) <= kBeside;
-  });
+  join_pieces(published_);
+  for (const Obstacle& obstacle : published_) {
+    if ((obstacle.center - robot).head<2>().norm() > settings_.reach) continue;
+    if (!obstacles.push_back(obstacle)) ++dropped_;
+  }
 }
 
 void Tracker::match(std::span<const Obstacle> found) {

@@ -51,13 +51,13 @@ private:
   };
 
   void match(std::span<const Obstacle> found);
-  bool is_part(const Track& track) const;
   void learn(Track& track, const Obstacle* found, float share) const;
 
   TrackingSettings settings_;
   FixedVector<Track> tracks_;
   FixedVector<Pair> pairs_;
   FixedVector<std::int32_t> track_of_;  // of each found one, -1 for none
+  FixedVector<Obstacle> published_;
   std::int64_t next_id_ = 1;
   std::uint64_t dropped_ = 0;
 };

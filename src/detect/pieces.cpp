@@ -1,0 +1,119 @@
+#include "scree/detect/pieces.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+#include <utility>
+
+namespace scree {
+namespace {
+
+/// In the frame of a box: along its length, and across.
+Eigen::Vector2d in_box(const Obstacle& box, const Eigen::Vector3d& place) {
+  const Eigen::Vector2d to = (place - box.center).head<2>();
+  const double cosine = std::cos(box.yaw), sine = std::sin(box.yaw);
+  return {cosine * to.x() + sine * to.y(), cosine * to.y() - sine * to.x()};
+}
+
+std::array<Eigen::Vector3d, 4> corners(const Obstacle& box) {
+  const Eigen::Vector3d along(std::cos(box.yaw), std::sin(box.yaw), 0);
+  const Eigen::Vector3d half_length = box.extent.x() / 2 * along;
+  const Eigen::Vector3d half_width = box.extent.y() / 2 * Eigen::Vector3d(-along.y(), along.x(), 0);
+  return {box.center + half_length + half_width, box.center + half_length - half_width,
+          box.center - half_length + half_width, box.center - half_length - half_width};
+}
+
+/// Between two boxes, which lie nearest to one another at a corner of one.
+double distance_between(const Obstacle& a, const Obstacle& b) {
+  double least = std::min(distance_to_box(a, b.center), distance_to_box(b, a.center));
+  for (const Eigen::Vector3d& corner : corners(b)) {
+    least = std::min(least, distance_to_box(a, corner));
+  }
+  for (const Eigen::Vector3d& corner : corners(a)) {
+    least = std::min(least, distance_to_box(b, corner));
+  }
+  return least;
+}
+
+bool is_piece(const Obstacle& whole, const Obstacle& piece) {
+  if (whole.kind != piece.kind) return false;
+  constexpr double kFarthest = 3;  // metres
+  const double distance = distance_between(whole, piece);
+  if (distance > kFarthest) return false;
+
+  constexpr double kBeside = 0.3;
+  constexpr std::uint32_t kLarger = 3;
+  if (distance_to_box(whole, piece.center) <= kBeside && whole.points > kLarger * piece.points) {
+    return true;
+  }
+  constexpr double kNear = 0.5, kSliver = 0.15;
+  const bool is_sliver = piece.extent.y() <= kSliver;
+  if (distance <= kNear && (is_sliver || piece.kind == ObstacleKind::negative)) return true;
+
+  // Parts of a wall lie on one line.
+  constexpr double kThin = 0.12, kInLine = 0.99;
+  const Eigen::Vector2d to = in_box(whole, piece.center);
+  return whole.extent.y() <= kThin && std::abs(to.x()) >= kInLine * to.norm();
+}
+
+/// The middle and the size of what holds two intervals.
+std::pair<double, double> hull(double low_a, double high_a, double low_b, double high_b) {
+  const double low = std::min(low_a, low_b), high = std::max(high_a, high_b);
+  return {(low + high) / 2, high - low};
+}
+
+void join(Obstacle& whole, const Obstacle& piece) {
+  const auto outline = corners(piece);
+  Eigen::Vector2d low = in_box(whole, outline[0]), high = low;
+  for (const Eigen::Vector3d& corner : outline) {
+    low = low.cwiseMin(in_box(whole, corner));
+    high = high.cwiseMax(in_box(whole, corner));
+  }
+  const Eigen::Vector3d half = whole.extent / 2;
+  const auto [along, length] = hull(-half.x(), half.x(), low.x(), high.x());
+  const auto [across, width] = hull(-half.y(), half.y(), low.y(), high.y());
+  const double up = piece.center.z() - whole.center.z(), half_up = piece.extent.z() / 2;
+  const auto [middle, tall] = hull(-half.z(), half.z(), up - half_up, up + half_up);
+  const double cosine = std::cos(whole.yaw), sine = std::sin(whole.yaw);
+  whole.center +=
+      Eigen::Vector3d(cosine * along - sine * across, sine * along + cosine * across, middle);
+  whole.extent = {length, width, tall};
+  if (length < width) {
+    constexpr double kQuarter = std::numbers::pi / 2;
+    std::swap(whole.extent.x(), whole.extent.y());
+    whole.yaw += whole.yaw > 0 ? -kQuarter : kQuarter;
+  }
+  if (std::abs(piece.height) > std::abs(whole.height)) whole.height = piece.height;
+  whole.points += piece.points;
+  whole.id = std::min(whole.id, piece.id);
+}
+
+}  // namespace
+
+double distance_to_box(const Obstacle& obstacle, const Eigen::Vector3d& place) {
+  const Eigen::Vector2d half = obstacle.extent.head<2>() / 2;
+  return (in_box(obstacle, place).cwiseAbs() - half).cwiseMax(0).norm();
+}
+
+void join_pieces(FixedVector<Obstacle>& obstacles) {
+  std::sort(obstacles.begin(), obstacles.end(), [](const Obstacle& a, const Obstacle& b) {
+    return a.points != b.points ? a.points > b.points : a.id < b.id;
+  });
+  std::size_t kept = 0;
+  for (const Obstacle& obstacle : obstacles) {
+    const auto wholes_end = obstacles.begin() + kept;
+    const auto whole = std::find_if(obstacles.begin(), wholes_end, [&](const Obstacle& other) {
+      return is_piece(other, obstacle);
+    });
+    if (whole != wholes_end) {
+      join(*whole, obstacle);
+    } else {
+      obstacles[kept++] = obstacle;
+    }
+  }
+  obstacles.resize(kept);
+}
+
+}  // namespace scree
