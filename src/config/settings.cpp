@@ -33,6 +33,7 @@ DetectSettings DetectSettings::for_map() {
   detect.max_edge_points = 1 << 17;
   detect.max_obstacles = 512;
   detect.voxel_grid = false;
+  detect.ground_trend = 2;
   detect.cluster_tolerance = 0.30;
   detect.network = "network_map.txt";
   detect.min_confidence = 0.05;

@@ -33,7 +33,8 @@ GroundSurfaceSettings surface_settings(const DetectSettings& settings) {
   return {.cell_size = static_cast<float>(settings.ground_cell),
           .cell_points = static_cast<float>(settings.ground_points),
           .max_slope = static_cast<float>(settings.ground_slope),
-          .tolerance = static_cast<float>(settings.ground_tolerance)};
+          .tolerance = static_cast<float>(settings.ground_tolerance),
+          .trend_reach = static_cast<float>(settings.ground_trend)};
 }
 
 Detector::Detector(const DetectSettings& settings, Network network)

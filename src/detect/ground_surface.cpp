@@ -23,6 +23,7 @@ GroundSurface::GroundSurface(std::size_t max_points, std::size_t max_cells)
       patch_(max_cells),
       queue_(max_cells),
       patches_(max_cells),
+      trend_(max_cells),
       fill_(max_cells) {}
 
 void GroundSurface::build(PointView points, const GroundSurfaceSettings& settings) {
@@ -36,7 +37,14 @@ void GroundSurface::build(PointView points, const GroundSurfaceSettings& setting
   }
   find_smooth_cells(settings.max_slope);
   find_patches(settings.max_slope);
+  const bool has_trend = settings.trend_reach > 0;
+  if (has_trend) {
+    trend_.fit(columns_, rows_, ground_.data(), median_.data(), cell_, settings.trend_reach);
+    add_trend(-1);
+    join_trend(settings.tolerance);
+  }
   join_patches(settings.tolerance);
+  if (has_trend) add_trend(1);
 }
 
 void GroundSurface::lay_out(PointView points, float cell_size) {
@@ -158,6 +166,31 @@ void GroundSurface::find_patches(float max_slope) {
       }
     }
     patches_.push_back({static_cast<std::uint32_t>(queue_.size())});
+  }
+}
+
+/// Moves the heights from above the trend to above zero (1), or back (-1).
+void GroundSurface::add_trend(float sign) {
+  smooth_.resize(columns_ * rows_);
+  for (std::size_t row = 0; row < rows_; ++row) {
+    for (std::size_t column = 0; column < columns_; ++column) {
+      const std::size_t cell = row * columns_ + column;
+      const float trend = sign * trend_.at(column, row);
+      median_[cell] += trend;
+      smooth_[cell] += trend;
+    }
+  }
+}
+
+/// Rings make many small patches, of which the largest may be any.
+void GroundSurface::join_trend(float tolerance) {
+  constexpr float kShare = 0.5F;  // the trend is not as near to the ground as the surface will be
+  for (std::size_t cell = 0; cell < patch_.size(); ++cell) {
+    if (patch_[cell] != kNoLabel) patches_[patch_[cell]].residual += median_[cell];
+  }
+  for (Patch& patch : patches_) {
+    const float cells = static_cast<float>(patch.cells);
+    patch.is_ground = std::abs(patch.residual) <= kShare * tolerance * cells;
   }
 }
 

@@ -48,6 +48,9 @@ void for_each_detect_key(std::string_view table, Detect& detect, Visit&& visit) 
       "steeper cells are no ground: lower finds flatter obstacles and more slopes of the ground");
   key("ground_tolerance", detect.ground_tolerance, "m", 0.001, 10,
       "a smooth patch this close to the continuation of the ground belongs to it");
+  key("ground_trend", detect.ground_trend, "m", 0, 100,
+      "the ground goes on as it runs on the whole within this distance, for clouds that have gaps; "
+      "0: level. Larger spans wider gaps, smaller follows hills");
   key("candidates", detect.candidates, "", 0, 0,
       "what clusters are made of: edges are the steep points (paper), bodies all points above or "
       "below the ground's surface");

@@ -176,6 +176,7 @@ struct DetectSettings {
   double ground_points = 2.15;
   double ground_slope = 0.34;
   double ground_tolerance = 0.10;
+  double ground_trend = 0;
 
   Candidates candidates = Candidates::edges;
   double body_height = 0.06;

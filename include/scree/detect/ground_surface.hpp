@@ -6,6 +6,7 @@
 
 #include "scree/core/fixed_vector.hpp"
 #include "scree/core/point_cloud.hpp"
+#include "scree/detect/ground_trend.hpp"
 #include "scree/detect/raster_fill.hpp"
 
 namespace scree {
@@ -15,13 +16,15 @@ struct GroundSurfaceSettings {
   float cell_points;  ///< least mean number of points in the cells that have any
   float max_slope;    ///< steeper cells are no ground, metres per metre
   float tolerance;    ///< a smooth patch this close to the ground's surface belongs to it, metres
+  float trend_reach;  ///< of GroundTrend, metres; 0: without it
 };
 
 /// The surface that the robot could drive on, under rocks and over holes. Cells of the plane that
 /// are nowhere steep make patches; the largest is ground, and so are those that lie in its
-/// continuation. What is left, the flanks and tops of rocks, the walls and floors of holes, is
-/// spanned from the ground around it. The paper has no such stage: its heights are above the
-/// surroundings of a cluster, which tilts on slopes and between two tall rocks.
+/// continuation or on the trend of the whole. What is left, the flanks and tops of rocks, the walls
+/// and floors of holes, is spanned from the ground around it. The paper has no such stage: its
+/// heights are above the surroundings of a cluster, which tilts on slopes and between two tall
+/// rocks.
 class GroundSurface {
 public:
   GroundSurface(std::size_t max_points, std::size_t max_cells);
@@ -54,6 +57,8 @@ private:
   float gather(PointView points);
   void find_smooth_cells(float max_slope);
   void find_patches(float max_slope);
+  void add_trend(float sign);
+  void join_trend(float tolerance);
   void join_patches(float tolerance);
   /// Mean height difference of the two neighbours of a cell (Sobel's 1-2-1 across), metres.
   float rise(std::size_t cell, std::size_t along, std::size_t across) const;
@@ -74,6 +79,7 @@ private:
     bool is_ground = false;
   };
   FixedVector<Patch> patches_;
+  GroundTrend trend_;
   RasterFill fill_;
 };
 

@@ -10,8 +10,11 @@ namespace scree {
 namespace {
 
 constexpr std::size_t kMaxPoints = 60'000, kMaxCells = 1 << 15;
-constexpr GroundSurfaceSettings kSettings{
-    .cell_size = 0.08F, .cell_points = 2.15F, .max_slope = 0.34F, .tolerance = 0.1F};
+constexpr GroundSurfaceSettings kSettings{.cell_size = 0.08F,
+                                          .cell_points = 2.15F,
+                                          .max_slope = 0.34F,
+                                          .tolerance = 0.1F,
+                                          .trend_reach = 0};
 
 /// 8 x 8 m of this shape, seen evenly, with noise of 5 mm.
 PointCloud seen(const std::function<float(float, float)>& height, std::size_t points = 30'000) {
@@ -26,11 +29,18 @@ PointCloud seen(const std::function<float(float, float)>& height, std::size_t po
   return cloud;
 }
 
-GroundSurface surface_of(PointView cloud) {
-  GroundSurface surface(kMaxPoints, kMaxCells);
-  surface.build(cloud, kSettings);
-  return surface;
-}
+/// Without the trend, and with it.
+class GroundSurfaceTest : public testing::TestWithParam<float> {
+protected:
+  static GroundSurface surface_of(PointView cloud) {
+    GroundSurfaceSettings settings = kSettings;
+    settings.trend_reach = GetParam();
+    GroundSurface surface(kMaxPoints, kMaxCells);
+    surface.build(cloud, settings);
+    return surface;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Trend, GroundSurfaceTest, testing::Values(0.0F, 2.0F));
 
 bool in_square(float x, float y, float half_width) {
   return std::abs(x) < half_width && std::abs(y) < half_width;
@@ -40,7 +50,7 @@ float slope(float x) {
   return 0.25F * x;
 }
 
-TEST(GroundSurface, FollowsASlope) {
+TEST_P(GroundSurfaceTest, FollowsASlope) {
   const GroundSurface surface = surface_of(seen([](float x, float) { return slope(x); }));
   for (float x = -3.5F; x < 3.6F; x += 0.5F) {
     EXPECT_TRUE(surface.is_ground(x, 1)) << x;
@@ -48,7 +58,7 @@ TEST(GroundSurface, FollowsASlope) {
   }
 }
 
-TEST(GroundSurface, SpansRocksAndHolesWithTheSlopeAroundThem) {
+TEST_P(GroundSurfaceTest, SpansRocksAndHolesWithTheSlopeAroundThem) {
   for (const float height : {0.2F, 1.2F, -0.2F, -1.0F}) {
     for (const float half_width : {0.15F, 0.5F, 1.0F}) {
       const GroundSurface surface = surface_of(seen([&](float x, float y) {
@@ -61,14 +71,14 @@ TEST(GroundSurface, SpansRocksAndHolesWithTheSlopeAroundThem) {
   }
 }
 
-TEST(GroundSurface, IsNotRaisedBetweenTwoTallRocks) {
+TEST_P(GroundSurfaceTest, IsNotRaisedBetweenTwoTallRocks) {
   const GroundSurface surface = surface_of(
       seen([](float x, float y) { return in_square(std::abs(x) - 0.65F, y, 0.5F) ? 1.0F : 0.0F; }));
   EXPECT_NEAR(surface.height(0, 0), 0, 0.03);
   EXPECT_TRUE(surface.is_ground(0, 0));
 }
 
-TEST(GroundSurface, FollowsASmoothHollowDownToThePotholeInIt) {
+TEST_P(GroundSurfaceTest, FollowsASmoothHollowDownToThePotholeInIt) {
   const GroundSurface surface = surface_of(seen([](float x, float y) {
     const float share = std::min(std::hypot(x, y) / 2.5F, 1.0F);
     const float hollow = -0.2F * (1 + std::cos(3.14159F * share));
@@ -80,7 +90,7 @@ TEST(GroundSurface, FollowsASmoothHollowDownToThePotholeInIt) {
   EXPECT_FALSE(surface.is_ground(0, 0));
 }
 
-TEST(GroundSurface, IsNotMovedBySinglePointsThatBelongToNothing) {
+TEST_P(GroundSurfaceTest, IsNotMovedBySinglePointsThatBelongToNothing) {
   PointCloud cloud = seen([](float, float) { return 0.0F; });
   for (std::size_t i = 0; i < cloud.size(); i += 1500) cloud.z[i] += i % 2 == 0 ? 1.0F : -0.5F;
   const GroundSurface surface = surface_of(cloud);
@@ -89,7 +99,7 @@ TEST(GroundSurface, IsNotMovedBySinglePointsThatBelongToNothing) {
   }
 }
 
-TEST(GroundSurface, TakesLargerCellsWhereTheCloudIsSparseOrWide) {
+TEST_P(GroundSurfaceTest, TakesLargerCellsWhereTheCloudIsSparseOrWide) {
   const auto flat = [](float, float) { return 0.0F; };
   EXPECT_EQ(surface_of(seen(flat, 60'000)).cell_size(), kSettings.cell_size);
   const GroundSurface sparse = surface_of(seen(flat, 3'000));
@@ -103,7 +113,7 @@ TEST(GroundSurface, TakesLargerCellsWhereTheCloudIsSparseOrWide) {
   EXPECT_NEAR(coarse.height(300, 0), 0, 0.02);
 }
 
-TEST(GroundSurface, AnswersForCloudsOfNothingAndFarOutside) {
+TEST_P(GroundSurfaceTest, AnswersForCloudsOfNothingAndFarOutside) {
   PointCloud cloud(100);
   EXPECT_EQ(surface_of(cloud).height(1, 2), 0);
   cloud.push_back(5, 6, 7, 0);
@@ -112,6 +122,34 @@ TEST(GroundSurface, AnswersForCloudsOfNothingAndFarOutside) {
   }
   const GroundSurface one_place = surface_of(cloud);
   EXPECT_EQ(one_place.points_in(one_place.cell_at(5, 6)), 100U);
+}
+
+TEST(GroundSurface, TheTrendGoesOnWithASlopeFromRingToRing) {
+  std::mt19937 random(3);
+  std::normal_distribution<float> wide(0, 0.06F), noise(0, 0.005F);
+  PointCloud cloud(kMaxPoints);
+  const auto see = [&](float x, float y) {
+    const float rock = std::hypot(x - 4.5F, y) < 0.4F ? 0.5F : 0.0F;
+    cloud.push_back(x, y, slope(x) + rock + noise(random), 0);
+  };
+  for (const float radius : {2.5F, 3.0F, 3.6F, 4.5F, 6.0F, 8.2F}) {
+    for (int i = 0; i < 3000; ++i) {
+      const float angle = static_cast<float>(i) * 0.0021F;
+      const float away = radius + wide(random);
+      see(away * std::cos(angle), away * std::sin(angle));
+    }
+  }
+  GroundSurface surface(kMaxPoints, kMaxCells);
+  GroundSurfaceSettings settings = kSettings;
+  settings.trend_reach = 2;
+  surface.build(cloud, settings);
+  EXPECT_NEAR(surface.height(4.5F, 0), slope(4.5F), 0.06);
+  EXPECT_NEAR(surface.height(-7, 0), slope(-7), 0.06);
+  EXPECT_NEAR(surface.height(7, 0), slope(7), 0.06);
+  for (const float radius : {2.5F, 4.5F, 6.0F, 8.2F}) {
+    EXPECT_NEAR(surface.height(-radius, 0), slope(-radius), 0.03) << radius;
+    EXPECT_NEAR(surface.height(0, radius), 0, 0.03) << radius;
+  }
 }
 
 TEST(RasterFill, SpansAHoleInAPlaneWithThePlane) {
