@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <mutex>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -15,10 +16,13 @@
 #include "hand_over.hpp"
 #include "health_watch.hpp"
 #include "imu_reader.hpp"
+#include "latest.hpp"
 #include "lidar_reader.hpp"
 #include "output_lines.hpp"
+#include "real_time.hpp"
 #include "scree/core/latency_histogram.hpp"
 #include "scree/publish/publisher.hpp"
+#include "turn_watch.hpp"
 
 namespace scree {
 namespace {
@@ -61,20 +65,21 @@ public:
         reader_(settings.lidar, std::move(ports), lines.pps, sweeps_),
         process_(std::move(process)),
         sensors_(sensors),
-        wait_ns_(static_cast<std::int64_t>(settings.map.wait * 1e9)),
         publisher_(std::move(publisher)),
         outputs_(settings.stop, lines),
         watch_(settings, steady_ns()) {
     health_.version = SCREE_VERSION;
+    Threads::apply(settings);
     if (sensors_ != nullptr) {
       imu_.emplace(settings.imu, *sensors_);
       encoder_.emplace(settings.encoder, *sensors_);
-      reading_imu_ = run("imu", [this] { imu_->run(); });
-      reading_encoder_ = run("encoder", [this] { encoder_->run(); });
+      reading_imu_ = run("imu", imu_->turns(), [this] { imu_->run(); });
+      reading_encoder_ = run("encoder", encoder_->turns(), [this] { encoder_->run(); });
     }
-    reading_ = run("lidar", [this] { reader_.run(); });
-    detecting_ = run("detector", [this] { detect(); });
-    publishing_ = run("publisher", [this] { publish(); });
+    reading_ = run("lidar", reader_.turns(), [this] { reader_.run(); });
+    detecting_ = run("detector", detected_, [this] { detect(); });
+    publishing_ = run("publisher", published_, [this] { publish(); });
+    run_first({&reading_, &reading_imu_, &reading_encoder_});
   }
 
   ~Threads() override {
@@ -90,13 +95,26 @@ public:
     reading_encoder_.join();
   }
 
+  std::string_view missing_thread() override { return turns_.missing(); }
+
+  void apply(const Settings& settings) override {
+    zone_.put(settings.stop);
+    wait_ns_ = static_cast<std::int64_t>(settings.map.wait * 1e9);
+  }
+
+  std::string status() override {
+    const std::scoped_lock lock(status_mutex_);
+    return status_;
+  }
+
   static std::size_t max_obstacles(const Settings& settings) {
     return static_cast<std::size_t>(settings.max_obstacles());
   }
 
 private:
   template <class Work>
-  static std::thread run(const char* name, Work work) {
+  std::thread run(const char* name, const Turns& turns, Work work) {
+    turns_.add(name, turns);
     std::thread thread(work);
     pthread_setname_np(thread.native_handle(), name);  // as `top -H` shows it
     return thread;
@@ -104,6 +122,7 @@ private:
 
   void detect() {
     while (!stop_) {
+      detected_.note();
       sweeps_.wait(kLook);
       // Without sweeps too, so that the sensors' rings do not fill.
       if (sensors_ != nullptr) sensors_->gather();
@@ -111,6 +130,7 @@ private:
         wait_for_motion(*sweep);
         detect(*sweep);
         sweeps_.give_back(sweep);
+        detected_.note();
       }
     }
   }
@@ -145,6 +165,7 @@ private:
   void publish() {
     std::int64_t next_look = steady_ns();
     while (!stop_) {
+      published_.note();
       const std::int64_t now = steady_ns();
       if (now >= next_look) {
         look(now);
@@ -179,6 +200,7 @@ private:
   }
 
   void look(std::int64_t now) {
+    outputs_.set_zone(zone_.get());
     const LidarStatus& lidar = reader_.status();
     bool has_changed =
         watch_.update(now, lidar, imu_ ? imu_->status() : ImuStatus(),
@@ -191,6 +213,14 @@ private:
     health_.sweeps_dropped = static_cast<std::int64_t>(lidar.sweeps_dropped);
     fill_dropped(lidar);
     if (has_changed || now - last_report_ns_ >= kReport) report(now);
+  }
+
+  void say_status() {
+    std::string status = health_.state == health_t::BLIND ? "blind: " + health_.reason
+                         : health_.stop != 0              ? "sees, and says stop"
+                                                          : "sees";
+    const std::scoped_lock lock(status_mutex_);
+    status_ = std::move(status);
   }
 
   void fill_dropped(const LidarStatus& lidar) {
@@ -215,6 +245,7 @@ private:
   }
 
   void report(std::int64_t now) {
+    say_status();
     health_.stamp_ns = wall_ns();
     health_.sweeps_waiting = static_cast<std::int32_t>(sweeps_.waiting());
     health_.lists_dropped = lists_dropped_.load(std::memory_order_relaxed);
@@ -233,7 +264,8 @@ private:
   std::optional<EncoderReader> encoder_;
   Process process_;
   SyncBuffer* sensors_;
-  std::int64_t wait_ns_;
+  std::atomic<std::int64_t> wait_ns_{0};
+  Latest<StopSettings> zone_;
 
   // Of the publishing thread alone.
   Publisher publisher_;
@@ -245,6 +277,10 @@ private:
   std::int64_t last_list_ns_ = 0, last_report_ns_ = steady_ns();
   Dropped dropped_;
 
+  TurnWatch turns_;
+  Turns detected_, published_;
+  std::mutex status_mutex_;
+  std::string status_ = "starting";
   std::thread reading_, reading_imu_, reading_encoder_, detecting_, publishing_;
 };
 

@@ -11,6 +11,7 @@
 #include "scree/sync/host_clock.hpp"
 #include "scree/sync/sync_buffer.hpp"
 #include "sensor_status.hpp"
+#include "turns.hpp"
 
 namespace scree {
 
@@ -29,6 +30,7 @@ public:
 
   /// For one other thread: what was seen so far.
   const EncoderStatus& status() { return shared_status_.get(); }
+  const Turns& turns() const { return turns_; }
 
 private:
   void open();
@@ -42,6 +44,7 @@ private:
   EncoderStatus status_;
   Latest<EncoderStatus> shared_status_;
   std::string said_;
+  Turns turns_;
   Event stop_;
 };
 

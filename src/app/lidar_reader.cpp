@@ -37,7 +37,8 @@ void LidarReader::run() {
                        {pps_.descriptor, POLLIN, 0},
                        {stop_.descriptor(), POLLIN, 0}};
   while (true) {
-    if (poll(wait_for, std::size(wait_for), -1) < 0) continue;  // a signal came between
+    turns_.note();
+    if (poll(wait_for, std::size(wait_for), kLongestTurnMs) < 0) continue;  // a signal came between
     if (wait_for[3].revents != 0) return;
     if ((wait_for[2].revents & POLLIN) != 0) {
       read_pulses();

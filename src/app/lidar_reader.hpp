@@ -14,6 +14,7 @@
 #include "scree/drivers/velodyne/udp_receiver.hpp"
 #include "scree/sync/host_clock.hpp"
 #include "sensor_status.hpp"
+#include "turns.hpp"
 
 namespace scree {
 
@@ -44,6 +45,7 @@ public:
 
   /// For one other thread: what was seen so far.
   const LidarStatus& status() { return shared_status_.get(); }
+  const Turns& turns() const { return turns_; }
 
 private:
   void read_data();
@@ -58,6 +60,7 @@ private:
   velodyne::LidarStream stream_;
   LidarStatus status_;
   Latest<LidarStatus> shared_status_;
+  Turns turns_;
   Event stop_;
   std::int64_t arrival_ns_ = 0;              // of the datagram under way
   std::array<std::uint8_t, 2048> buffer_{};  // longer than a packet, to tell the size of others

@@ -1,29 +1,36 @@
 #include <signal.h>
-#include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 
+#include "latest.hpp"
+#include "log_format.hpp"
+#include "real_time.hpp"
+#include "running_config.hpp"
 #include "scree/app/daemon.hpp"
 #include "scree/app/pipeline.hpp"
-#include "scree/drivers/encoder/dbc.hpp"
 #include "scree/drivers/gpio/lines.hpp"
+#include "service_manager.hpp"
+#include "supervisor.hpp"
 
 namespace {
 
 enum ExitCode : int { kStopped = 0, kFailed = 1, kUsage = 2 };
 
 int failed(const std::string& reason) {
-  std::fprintf(stderr, "screed: %s\n", reason.c_str());
+  const char* prefix = scree::service_manager::logs_to_journal() ? "<3>" : "screed: ";
+  std::fprintf(stderr, "%s%s\n", prefix, reason.c_str());
   return kFailed;
 }
 
-scree::Process process_of(scree::Pipeline& pipeline) {
-  return [&pipeline, all = scree::Dropped()](
+scree::Process process_of(scree::Pipeline& pipeline,
+                          scree::Latest<scree::TrackingSettings>& tracking) {
+  return [&pipeline, &tracking, all = scree::Dropped()](
              const scree::Sweep& sweep,
              scree::Dropped& dropped) mutable -> const scree::ObstacleList& {
+    pipeline.set_tracking(tracking.get());
     const scree::ObstacleList& list = pipeline.process(sweep);
     const scree::StageCounts counts = pipeline.counts();
     all.points += counts.dropped;
@@ -49,28 +56,40 @@ scree::RobotLines robot_lines(scree::gpio::Lines& held) {
   return lines;
 }
 
-int run(const std::filesystem::path& config) {
-  auto settings = scree::load_settings(config);
-  if (!settings) return failed(settings.error().message);
-  const auto encoder = scree::encoder::with_dbc(settings->encoder, config.parent_path());
-  if (!encoder) return failed(encoder.error().message);
-  settings->encoder = *encoder;
-  auto lines = scree::gpio::Lines::open(settings->gpio);  // stop is on from here
+/// Of the configuration and of all that it names; nothing is opened or started.
+int check(const std::filesystem::path& file) {
+  const auto config = scree::RunningConfig::read(file);
+  if (!config) return failed(config.error().message);
+  const scree::Settings& settings = config->settings();
+  for (const auto* detect : {&settings.detect_map, &settings.detect_sweep}) {
+    const auto network = scree::load_network(*detect, file.parent_path());
+    if (!network) return failed(network.error().message);
+  }
+  return kStopped;
+}
+
+int run(const std::filesystem::path& file) {
+  auto config = scree::RunningConfig::read(file);
+  if (!config) return failed(config.error().message);
+  const scree::Settings& settings = config->settings();
+  auto lines = scree::gpio::Lines::open(settings.gpio);  // stop is on from here
   if (!lines) return failed(lines.error().message);
-  auto pipeline = scree::Pipeline::make(*settings, config.parent_path());
+  auto pipeline = scree::Pipeline::make(settings, file.parent_path());
   if (!pipeline) return failed(pipeline.error().message);
 
-  sigset_t stop_signals;
-  sigemptyset(&stop_signals);
-  sigaddset(&stop_signals, SIGTERM);
-  sigaddset(&stop_signals, SIGINT);
-  pthread_sigmask(SIG_BLOCK, &stop_signals, nullptr);
-  auto daemon = scree::Daemon::start(*settings, process_of(*pipeline), &pipeline->sensors(),
-                                     robot_lines(*lines));
+  scree::Latest<scree::TrackingSettings> tracking;
+  tracking.put(settings.track);
+  const scree::Signals signals;
+  auto daemon = scree::Daemon::start(settings, process_of(*pipeline, tracking),
+                                     &pipeline->sensors(), robot_lines(*lines));
   if (!daemon) return failed(daemon.error().message);
+  scree::lock_memory();
 
-  int signal = 0;
-  sigwait(&stop_signals, &signal);
+  const int signal = scree::supervise(**daemon, signals, [&] {
+    if (!config->reread()) return;
+    tracking.put(settings.track);
+    (*daemon)->apply(settings);
+  });
   spdlog::info("stopping: {}", signal == SIGINT ? "interrupted" : "asked to terminate");
   return kStopped;
 }
@@ -85,17 +104,17 @@ int main(int argc, char** argv) {
   app.add_option("--config", config, "configuration file")
       ->type_name("FILE")
       ->capture_default_str();
+  bool only_checks = false;
+  app.add_flag("--check-config", only_checks,
+               "check the configuration and end: 0 when it is right");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kStopped : kUsage;
   }
-  // The journal has its own time stamps, people at a terminal do not.
-  spdlog::set_default_logger(spdlog::stderr_logger_mt("screed"));
-  spdlog::set_pattern("%H:%M:%S.%e %l: %v");
-  spdlog::flush_on(spdlog::level::info);
+  scree::set_up_log();
   try {
-    return run(config);
+    return only_checks ? check(config) : run(config);
   } catch (const std::exception& error) {
     return failed(error.what());
   }

@@ -34,6 +34,7 @@ class OutputLines {
 public:
   OutputLines(const StopSettings& zone, const RobotLines& lines);
 
+  void set_zone(const StopSettings& zone) { decision_.set_zone(zone); }
   void see(const ObstacleList& list, std::int64_t now_ns);
   void set_blind(bool is_blind, std::int64_t now_ns);
   /// The heartbeat changes its level.

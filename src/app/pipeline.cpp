@@ -4,11 +4,16 @@
 
 namespace scree {
 
-Result<Detector> make_detector(const DetectSettings& settings,
-                               const std::filesystem::path& config_folder) {
+Result<Network> load_network(const DetectSettings& settings,
+                             const std::filesystem::path& config_folder) {
   const auto file = find_file(settings.network, config_folder);
   if (!file) return tl::make_unexpected(file.error());
-  auto network = Network::load(*file);
+  return Network::load(*file);
+}
+
+Result<Detector> make_detector(const DetectSettings& settings,
+                               const std::filesystem::path& config_folder) {
+  auto network = load_network(settings, config_folder);
   if (!network) return tl::make_unexpected(network.error());
   return Detector(settings, *std::move(network));
 }

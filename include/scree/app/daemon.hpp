@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <string>
+#include <string_view>
 
 #include "scree/app/robot_lines.hpp"
 #include "scree/config/settings.hpp"
@@ -41,6 +43,16 @@ public:
 
   /// Stops and joins the threads. The stop line is set once more.
   virtual ~Daemon() = default;
+
+  // For the thread that has started it.
+
+  /// The name of a thread that has not gone round since this last found that all had; empty when
+  /// all have. A thread that waits goes round twice a second, the detector once a sweep.
+  virtual std::string_view missing_thread() = 0;
+  /// Takes over settings.stop and settings.map.wait.
+  virtual void apply(const Settings& settings) = 0;
+  /// What the robot sees, or why it does not; one sentence.
+  virtual std::string status() = 0;
 };
 
 }  // namespace scree

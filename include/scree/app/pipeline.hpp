@@ -31,6 +31,8 @@ public:
   bool is_covered(std::int64_t end_ns);
   /// @return the list of this sweep; valid until the next call
   const ObstacleList& process(const Sweep& sweep);
+  /// From the next sweep on.
+  void set_tracking(const TrackingSettings& settings) { tracker_.set(settings); }
 
   /// What found the obstacles of the last list, and in which points.
   const Detector& detector() const { return uses_map_ ? map_detector_ : sweep_detector_; }
@@ -57,6 +59,9 @@ private:
   bool uses_map_ = false;
 };
 
+/// The weights of a set of stages.
+Result<Network> load_network(const DetectSettings& settings,
+                             const std::filesystem::path& config_folder);
 /// A detector with its weights, for clouds (detect.cloud), the map (detect.map) or sweeps
 /// (detect.sweep).
 Result<Detector> make_detector(const DetectSettings& settings,

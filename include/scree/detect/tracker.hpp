@@ -27,6 +27,7 @@ public:
   void update(std::int64_t stamp_ns, const Eigen::Vector3d& robot, std::span<const Obstacle> found,
               const std::function<Sight(const Eigen::Vector3d&)>& sight,
               FixedVector<Obstacle>& obstacles);
+  void set(const TrackingSettings& settings) { settings_ = settings; }
   void clear() { tracks_.clear(); }
 
   /// Candidates that no track had room for, pairs of track and candidate beyond those compared, and

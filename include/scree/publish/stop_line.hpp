@@ -18,6 +18,9 @@ class StopLine {
 public:
   explicit StopLine(const StopSettings& settings) : settings_(settings) {}
 
+  /// From the next list on.
+  void set_zone(const StopSettings& settings) { settings_ = settings; }
+
   void see(const ObstacleList& list, std::int64_t now_ns);
   void set_blind(bool is_blind, std::int64_t now_ns);
 

@@ -192,6 +192,43 @@ TEST_F(DaemonTest, TheLinesFollowWhatIsSeen) {
   EXPECT_TRUE(is_stopped) << "at the end";
 }
 
+TEST_F(DaemonTest, AThreadThatDoesNotGoRoundIsNamed) {
+  const auto daemon = start();
+  // Asks from time to time, until it says so or a minute is over.
+  const auto is_missing = [&](std::string_view thread) {
+    const auto end = Clock::now() + std::chrono::minutes(1);
+    while (daemon->missing_thread() != thread && Clock::now() < end) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return Clock::now() < end;
+  };
+  const SendingLidar lidar(settings_.lidar.port);
+  ASSERT_TRUE(listener_->until([&] { return listener_->lists > 0; }));
+  EXPECT_TRUE(is_missing(""));
+  is_stuck_ = true;
+  for (int i = 0; i < 3; ++i) {
+    // All others go round meanwhile.
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+    ASSERT_TRUE(is_missing("detector"));
+  }
+  is_stuck_ = false;
+  EXPECT_TRUE(is_missing(""));
+}
+
+TEST_F(DaemonTest, TheStopZoneCanChangeMeanwhile) {
+  settings_.stop.hold = 0;
+  const auto daemon = start();
+  const SendingLidar lidar(settings_.lidar.port);
+  rock_x_ = 10;
+  ASSERT_TRUE(listener_->until(
+      [&] { return listener_->health.state == health_t::OK && listener_->health.stop == 0; }));
+  EXPECT_EQ(daemon->status(), "sees");
+  settings_.stop.length = 20;
+  daemon->apply(settings_);
+  ASSERT_TRUE(listener_->until([&] { return listener_->health.stop == 1; }));
+  EXPECT_EQ(daemon->status(), "sees, and says stop");
+}
+
 TEST_F(DaemonTest, TheLastHealthSaysThatItWasStopped) {
   start().reset();
   EXPECT_TRUE(listener_->until([&] { return listener_->health.reason == "screed was stopped"; }));

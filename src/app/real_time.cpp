@@ -1,0 +1,38 @@
+#include "real_time.hpp"
+
+#include <pthread.h>
+#include <sched.h>
+#include <spdlog/spdlog.h>
+#include <sys/mman.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace scree {
+namespace {
+
+// Above ordinary threads, below those of the kernel that serve interrupts (50).
+constexpr int kPriority = 40;
+
+}  // namespace
+
+void run_first(std::initializer_list<std::thread*> threads) {
+  const sched_param priority{.sched_priority = kPriority};
+  for (std::thread* thread : threads) {
+    if (!thread->joinable()) continue;
+    if (pthread_setschedparam(thread->native_handle(), SCHED_FIFO, &priority) == 0) continue;
+    spdlog::info(
+        "the sensors' threads run as other programs do, a busy computer delays them: there is no "
+        "right to real-time priority {} (RLIMIT_RTPRIO)",
+        kPriority);
+    return;
+  }
+}
+
+void lock_memory() {
+  if (mlockall(MCL_CURRENT) == 0) return;
+  spdlog::info("memory is not locked, pages may be swapped out: {} (RLIMIT_MEMLOCK)",
+               std::strerror(errno));
+}
+
+}  // namespace scree

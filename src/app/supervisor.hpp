@@ -1,0 +1,30 @@
+#pragma once
+
+#include <signal.h>
+
+#include <chrono>
+#include <functional>
+
+#include "scree/app/daemon.hpp"
+
+namespace scree {
+
+/// The signals that the daemon obeys. To be made before it starts threads, which inherit that they
+/// are blocked.
+class Signals {
+public:
+  Signals();
+  /// The next one of SIGTERM, SIGINT and SIGHUP, or 0 when none has come.
+  int wait(std::chrono::microseconds longest) const;
+
+private:
+  sigset_t signals_{};
+};
+
+/// Serves the running daemon until SIGTERM or SIGINT comes, which it returns: tells systemd how it
+/// fares, and that it is alive as long as all its threads go round; says in the log which one does
+/// not.
+/// @param reload is called at SIGHUP
+int supervise(Daemon& daemon, const Signals& signals, const std::function<void()>& reload);
+
+}  // namespace scree

@@ -1,0 +1,35 @@
+#include "app/running_config.hpp"
+
+#include <gtest/gtest.h>
+
+#include "unit/temporary_folder.hpp"
+
+namespace scree {
+namespace {
+
+TEST(RunningConfig, ABadFileLeavesTheOldSettings) {
+  const TemporaryFolder folder;
+  const auto write = [&](const char* text) { return folder.write("robot.toml", text); };
+  const auto file = write("[stop]\nlength = 3.0\n[lidar]\nport = 4000\n");
+  auto config = RunningConfig::read(file);
+  ASSERT_TRUE(config) << config.error().message;
+  EXPECT_EQ(config->settings().stop.length, 3.0);
+
+  write("[stop]\nlength = -1.0\n");
+  EXPECT_FALSE(config->reread());
+  EXPECT_EQ(config->settings().stop.length, 3.0);
+  write("[encoder]\ndbc = \"none.dbc\"\nsignal = \"A.B\"\nscale = 1.0\n[stop]\nlength = 9.0\n");
+  EXPECT_FALSE(config->reread()) << "the DBC file is not there";
+  EXPECT_EQ(config->settings().stop.length, 3.0);
+
+  write("[stop]\nlength = 5.0\n[track]\nreach = 4.0\n[map]\nwait = 0.1\n[lidar]\nport = 5000\n");
+  EXPECT_TRUE(config->reread());
+  EXPECT_EQ(config->settings().stop.length, 5.0);
+  EXPECT_EQ(config->settings().track.reach, 4.0);
+  EXPECT_EQ(config->settings().map.wait, 0.1);
+  EXPECT_EQ(config->settings().lidar.port, 4000) << "bound already";
+  EXPECT_FALSE(config->reread()) << "nothing new";
+}
+
+}  // namespace
+}  // namespace scree
