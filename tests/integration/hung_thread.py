@@ -1,4 +1,4 @@
-"""Stops one thread of a process, as if it hung, and lets it go on."""
+"""Stops one thread of a process, as if it hung, and lets it go on or takes note of its death."""
 
 import contextlib
 import ctypes
@@ -27,7 +27,8 @@ def thread_of(process, name):
 
 
 def hang(process, name):
-    """The thread hangs from now on, until let_go() or the end of this program."""
+    """The thread hangs from now on, until let_go() or the end of this program. When its process is
+    killed it needs bury(), for the process to be gone."""
     thread = thread_of(process, name)
     ptrace(SEIZE, thread)
     ptrace(INTERRUPT, thread)
@@ -37,6 +38,10 @@ def hang(process, name):
 
 def let_go(thread):
     ptrace(DETACH, thread)
+
+
+def bury(thread):
+    os.waitpid(thread, WAIT_FOR_ANY_THREAD)
 
 
 @contextlib.contextmanager
