@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "scree/config/keys.hpp"
+#include "scree/config/reload.hpp"
 
 namespace scree {
 
@@ -275,8 +276,10 @@ Result<Settings> load_settings(const std::filesystem::path& file) {
 }
 
 std::string default_settings_toml() {
-  std::string text =
-      "# Scree's configuration: every key with its default. A key left out keeps its default.\n";
+  std::string text = fmt::format(
+      "# Scree's configuration: every key with its default. A key left out keeps its default.\n"
+      "# `systemctl reload screed` takes over {}; the other keys need a restart.\n",
+      kReloadableKeys);
   std::string_view table;
   const Settings defaults;
   for_each_key(defaults, [&](const Key& key, const auto& value) {
