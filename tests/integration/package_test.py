@@ -40,8 +40,8 @@ class PackageTest(ProgramTest):
 
     def test_its_programs_find_its_files(self):
         root = self.unpack()
-        self.done(f"{root}/usr/bin/screed", "--check-config", "--config", f"{root}/etc/scree/scree.toml")
-        self.done(f"{root}/usr/bin/screed", "--check-config", "--config", f"{root}/usr/share/scree/paper.toml")
+        for config in ["etc/scree/scree.toml", "usr/share/scree/paper.toml"]:
+            self.done(f"{root}/usr/bin/screed", "--check-config", "--config", f"{root}/{config}")
 
     def test_every_command_has_a_manual_page(self):
         root = self.unpack()

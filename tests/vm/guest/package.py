@@ -6,7 +6,14 @@ from robot import CONFIG
 from steps import fails, run, show, until
 
 # What dpkg, systemd and the kernel keep of any package.
-OTHERS = ("/var/lib/dpkg", "/var/log", "/var/cache", "/etc/ld.so.cache", "/var/lib/systemd", "/etc/.pwd.lock")
+OTHERS = (
+    "/etc/.pwd.lock",
+    "/etc/ld.so.cache",
+    "/var/cache",
+    "/var/lib/dpkg",
+    "/var/lib/systemd",
+    "/var/log",
+)
 
 
 def snapshot():

@@ -93,7 +93,10 @@ class Robot:
             text = file.read()
         text = re.sub(r'device = ".*"', f'device = "{device or self.mti.port}"', text)
         text = text.replace('interface = "can0"', 'interface = "vcan0"')
-        lines = f'[gpio]\npps = "{self.chip.name}:pps"\nstop = "rig:stop"\nheartbeat = "{self.chip.name}:2"\n'
+        lines = (
+            f'[gpio]\npps = "{self.chip.name}:pps"\nstop = "rig:stop"\n'
+            f'heartbeat = "{self.chip.name}:2"\n'
+        )
         with open(CONFIG, "w") as file:
             file.write(f"{text}{lines}[stop]\n{stop}\n[map]\n{MAP}voxel = {voxel}\n")
 

@@ -95,7 +95,9 @@ class GpioChip:
     """A simulated chip with named lines (kernel: Documentation/admin-guide/gpio/gpio-sim.rst)."""
 
     def __init__(self, label, lines):
-        run("modprobe gpio-sim; mountpoint -q /sys/kernel/config || mount -t configfs none /sys/kernel/config")
+        run("modprobe gpio-sim")
+        if not os.path.exists("/sys/kernel/config/gpio-sim"):
+            run("mount -t configfs none /sys/kernel/config")
         chip = f"/sys/kernel/config/gpio-sim/{label}"
         os.makedirs(f"{chip}/bank0")
         self._write(f"{chip}/bank0/num_lines", len(lines))
