@@ -31,10 +31,9 @@ bool RunningConfig::reread() {
     return false;
   }
   const Reload change = reload(written_, read_again->written_);
-  written_ = change.settings;
-  settings_.stop = written_.stop;
-  settings_.track = written_.track;
-  settings_.map.wait = written_.map.wait;
+  const EncoderSettings encoder = settings_.encoder;  // no key of it changes meanwhile
+  settings_ = written_ = change.settings;
+  settings_.encoder = encoder;
   spdlog::info("reloaded {}: {}{}", file_.string(),
                change.applied.empty() ? "nothing that can change now has" : "changed are ",
                fmt::join(change.applied, ", "));
