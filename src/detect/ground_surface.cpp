@@ -40,11 +40,11 @@ void GroundSurface::build(PointView points, const GroundSurfaceSettings& setting
   const bool has_trend = settings.trend_reach > 0;
   if (has_trend) {
     trend_.fit(columns_, rows_, ground_.data(), median_.data(), cell_, settings.trend_reach);
-    add_trend(-1);
+    add_trend(-1, {&median_});
     join_trend(settings.tolerance);
   }
   join_patches(settings.tolerance);
-  if (has_trend) add_trend(1);
+  if (has_trend) add_trend(1, {&median_, &smooth_});
 }
 
 void GroundSurface::lay_out(PointView points, float cell_size) {
@@ -169,15 +169,13 @@ void GroundSurface::find_patches(float max_slope) {
   }
 }
 
-/// Moves the heights from above the trend to above zero (1), or back (-1).
-void GroundSurface::add_trend(float sign) {
-  smooth_.resize(columns_ * rows_);
+/// Moves heights from above the trend to above zero (1), or back (-1).
+void GroundSurface::add_trend(float sign,
+                              std::initializer_list<FixedVector<float>*> rasters) const {
   for (std::size_t row = 0; row < rows_; ++row) {
     for (std::size_t column = 0; column < columns_; ++column) {
-      const std::size_t cell = row * columns_ + column;
       const float trend = sign * trend_.at(column, row);
-      median_[cell] += trend;
-      smooth_[cell] += trend;
+      for (FixedVector<float>* raster : rasters) (*raster)[row * columns_ + column] += trend;
     }
   }
 }

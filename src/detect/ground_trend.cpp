@@ -51,11 +51,12 @@ void GroundTrend::fit(std::size_t columns, std::size_t rows, const std::uint8_t*
                       const float* heights, float cell_size, float reach) {
   gather(columns, rows, known, heights, cell_size);
   fit_whole();
+  weigh_by_distance(reach / (static_cast<float>(side_) * cell_size));
   for (const float scale : kScales) {
     for (Block& block : blocks_) {
       block.counts = block.weight * robust(block.height - block.trend, scale);
     }
-    fit_around(reach / (static_cast<float>(side_) * cell_size));
+    fit_around();
   }
 }
 
@@ -103,13 +104,16 @@ void GroundTrend::fit_whole() {
   }
 }
 
-void GroundTrend::fit_around(float reach) {
+void GroundTrend::weigh_by_distance(float reach) {
   const auto window = static_cast<std::size_t>(std::ceil(2 * reach));
   kernel_.resize(std::min(window, kMostWindow) + 1);
   for (std::size_t i = 0; i < kernel_.size(); ++i) {
     const float away = static_cast<float>(i) / reach;
     kernel_[i] = std::exp(-0.5F * away * away);
   }
+}
+
+void GroundTrend::fit_around() {
   for (std::size_t row = 0; row < rows_; ++row) {
     for (std::size_t column = 0; column < columns_; ++column) {
       Block& here = blocks_[row * columns_ + column];

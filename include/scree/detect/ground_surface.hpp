@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 
 #include "scree/core/fixed_vector.hpp"
 #include "scree/core/point_cloud.hpp"
@@ -57,7 +58,7 @@ private:
   float gather(PointView points);
   void find_smooth_cells(float max_slope);
   void find_patches(float max_slope);
-  void add_trend(float sign);
+  void add_trend(float sign, std::initializer_list<FixedVector<float>*> rasters) const;
   void join_trend(float tolerance);
   void join_patches(float tolerance);
   /// Mean height difference of the two neighbours of a cell (Sobel's 1-2-1 across), metres.

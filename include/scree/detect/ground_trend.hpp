@@ -9,9 +9,9 @@ namespace scree {
 
 /// How the ground runs on the whole, from what is known of a raster here and there: planes fitted
 /// around each place by robust locally weighted regression (Cleveland, Robust Locally Weighted
-/// Regression and Smoothing Scatterplots, 1979), each round to what the one before left over. It
-/// goes on with the slope where rings lie far apart, and what stands on the ground or lies below it
-/// hardly moves it. Memory is taken once.
+/// Regression and Smoothing Scatterplots, 1979) to what a plane through all leaves over. It goes on
+/// with the slope where rings lie far apart, and what stands on the ground or lies below it hardly
+/// moves it. Memory is taken once.
 class GroundTrend {
 public:
   explicit GroundTrend(std::size_t max_cells);
@@ -37,7 +37,8 @@ private:
   void gather(std::size_t columns, std::size_t rows, const std::uint8_t* known,
               const float* heights, float cell_size);
   void fit_whole();
-  void fit_around(float reach);  // in blocks
+  void weigh_by_distance(float reach);  // in blocks
+  void fit_around();
   float left_over(std::size_t column, std::size_t row) const;
 
   static constexpr std::size_t kMostWindow = 64;  // blocks to each side
