@@ -15,6 +15,7 @@ namespace {
 /// What came of one drive.
 struct DriveResult {
   Truth truth;
+  Truth after_faults;  ///< the same, of the times after the last gap of a sensor
   std::array<std::vector<ObstacleList>, kDriveWays> lists;
   SurfaceError surface, level;
 
@@ -34,11 +35,20 @@ ObstacleList copy_of(const ObstacleList& list) {
 }
 
 void drive_with_faults(const Drive& drive, const Settings& settings, const StudyTask& task,
-                       std::vector<ObstacleList>& lists) {
+                       DriveResult& result) {
+  const Faults faults = draw_faults(drive.settings.seconds, drive.settings.seed);
   Pipeline pipeline = make_pipeline(settings, task);
-  DriveFeed feed(drive, draw_faults(drive.settings.seconds, drive.settings.seed));
+  DriveFeed feed(drive, faults);
   Sweep sweep(static_cast<std::size_t>(settings.map.max_points));
-  while (feed.next(sweep, {&pipeline.sensors()})) lists.push_back(copy_of(pipeline.process(sweep)));
+  while (feed.next(sweep, {&pipeline.sensors()})) {
+    result.of(DriveWay::faults).push_back(copy_of(pipeline.process(sweep)));
+  }
+  const double seconds = std::max(faults.imu_gap.end(), faults.encoder_gap.end());
+  const std::int64_t end_ns =
+      result.truth.poses.front().t_ns + static_cast<std::int64_t>(seconds * 1e9);
+  result.after_faults = result.truth;
+  std::erase_if(result.after_faults.visible,
+                [&](const Truth::Sight& sight) { return sight.t_ns < end_ns; });
 }
 
 void drive_without_faults(const Drive& drive, const Settings& settings, const StudyTask& task,
@@ -79,7 +89,7 @@ DriveResult drive_once(const StudyTask& task, Scene scene, std::uint64_t seed) {
   DriveResult result;
   drive_without_faults(drive, settings, task, result);
   if (drawn.seconds >= kLeastFaultySeconds) {
-    drive_with_faults(drive, settings, task, result.of(DriveWay::faults));
+    drive_with_faults(drive, settings, task, result);
   }
   return result;
 }
@@ -103,6 +113,10 @@ Truth of_warned_obstacles(Truth truth) {
 void add(SceneResult& scene, DriveResult& drive) {
   for (std::size_t way = 0; way < kDriveWays; ++way) {
     if (!drive.lists[way].empty()) scene.scorers[way].add(drive.truth, drive.lists[way]);
+  }
+  if (!drive.after_faults.visible.empty()) {
+    scene.healed.add(drive.after_faults, drive.of(DriveWay::faults));
+    scene.unharmed.add(drive.after_faults, drive.of(DriveWay::pipeline));
   }
   scene.large.add(of_warned_obstacles(drive.truth), drive.of(DriveWay::pipeline));
   scene.surface += drive.surface;

@@ -29,6 +29,8 @@ inline constexpr std::array<std::string_view, kDriveWays> kDriveWayNames = {
 struct SceneResult {
   Scene scene = Scene::easy;
   std::array<Scorer, kDriveWays> scorers;  ///< empty: the drives are too short for faults
+  Scorer healed;         ///< with faults, but only the lists after the last of them
+  Scorer unharmed;       ///< pipeline; the lists of the same times
   Scorer large;          ///< pipeline; asked only for obstacles that a warning distance is set for
   SurfaceError surface;  ///< of the pipeline's map at the end of each drive
   SurfaceError level;    ///< the same map, laid onto the truth by roll and pitch too

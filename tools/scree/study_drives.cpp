@@ -25,11 +25,19 @@ struct Block {
   std::vector<Column> columns;
 };
 
-double f1_of(const SceneResult& scene, DriveWay way) {
-  const Score score = scene.of(way).scores.all();
+double f1_of(const ScoringResult& result) {
+  const Score score = result.scores.all();
   const bool is_of_nothing =
       score.true_positives + score.false_positives + score.false_negatives == 0;
   return is_of_nothing ? kNone : score.f1();
+}
+
+double f1_of(const SceneResult& scene, DriveWay way) {
+  return f1_of(scene.of(way));
+}
+
+double cost_after_faults(const SceneResult& scene) {
+  return f1_of(scene.unharmed.result()) - f1_of(scene.healed.result());
 }
 
 double cost_of_faults(const SceneResult& scene) {
@@ -77,6 +85,7 @@ Block detection_block() {
           {{"f1", 3, f1(DriveWay::pipeline)},
            {"f1_with_faults", 3, f1(DriveWay::faults)},
            {"cost_of_faults", 3, cost_of_faults},
+           {"cost_after_faults", 3, cost_after_faults},
            {"f1_dead_reckoning", 3, f1(DriveWay::dead_reckoning)},
            {"f1_single_sweeps", 3, f1(DriveWay::sweeps)},
            {"coverage", 3, coverage}}};
@@ -213,6 +222,7 @@ std::string goals_of(const std::vector<Block>& blocks, const std::vector<SceneRe
   const std::vector<Goal> goals = {{"f1", true, 0.97},
                                    {"coverage", true, 1},
                                    {"cost_of_faults", false, 0.05},
+                                   {"cost_after_faults", false, 0.05},
                                    {"drift_largest", false, 1},
                                    {"yaw_largest", false, 0.5},
                                    {"map_rms_m", false, 0.03},
