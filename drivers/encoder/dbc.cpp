@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "dbc_text.hpp"
-#include "near_names.hpp"
+#include "scree/config/near_names.hpp"
 
 namespace scree::encoder {
 namespace {

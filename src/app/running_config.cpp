@@ -5,6 +5,7 @@
 
 #include <utility>
 
+#include "scree/config/configuration.hpp"
 #include "scree/config/reload.hpp"
 #include "scree/drivers/encoder/dbc.hpp"
 
@@ -15,13 +16,17 @@ RunningConfig::RunningConfig(std::filesystem::path file, const Settings& written
     : file_(std::move(file)), written_(written), settings_(settings) {}
 
 Result<RunningConfig> RunningConfig::read(const std::filesystem::path& file) {
-  const auto written = load_settings(file);
-  if (!written) return tl::make_unexpected(written.error());
-  auto encoder = encoder::with_dbc(written->encoder, file.parent_path());
-  if (!encoder) return tl::make_unexpected(encoder.error());
-  Settings settings = *written;
+  const auto configuration = read_configuration(file);
+  if (!configuration) return tl::make_unexpected(configuration.error());
+  const Settings& written = configuration->settings;
+  auto encoder = encoder::with_dbc(written.encoder, file.parent_path());
+  if (!encoder) {
+    return fail(fmt::format("{}: {}", configuration->source_of("encoder.signal").text(),
+                            encoder.error().message));
+  }
+  Settings settings = written;
   settings.encoder = *std::move(encoder);
-  return RunningConfig(file, *written, settings);
+  return RunningConfig(file, written, settings);
 }
 
 bool RunningConfig::reread() {

@@ -1,7 +1,5 @@
 #include "scree/config/reload.hpp"
 
-#include <spdlog/fmt/fmt.h>
-
 #include "scree/config/keys.hpp"
 
 namespace scree {
@@ -23,8 +21,7 @@ Reload reload(const Settings& running, const Settings& wanted) {
     const Value& wanted_value = *static_cast<const Value*>(wanted_values[next++]);
     if (value == wanted_value) return;
     const bool can_change = is_reloadable(key);
-    (can_change ? result.applied : result.refused)
-        .push_back(fmt::format("{}.{}", key.table, key.name));
+    (can_change ? result.applied : result.refused).push_back(full_name(key));
     if (can_change) value = wanted_value;
   });
   return result;

@@ -43,6 +43,24 @@ class PackageTest(ProgramTest):
         for config in ["etc/scree/scree.toml", "usr/share/scree/paper.toml"]:
             self.done(f"{root}/usr/bin/screed", "--check-config", "--config", f"{root}/{config}")
 
+    def test_drop_ins_go_over_the_shipped_configuration(self):
+        root = self.unpack()
+        drop_in = self.path("root/etc/scree/scree.d/robot.toml")
+        os.mkdir(os.path.dirname(drop_in))
+        with open(drop_in, "w") as file:
+            file.write("[stop]\nlength = 4.5\n")
+        scree, config = f"{root}/usr/bin/scree", f"{root}/etc/scree/scree.toml"
+        effective = self.done(scree, "config", "--config", config)
+        self.assertRegex(effective, rf"\nlength = 4\.5 +# {drop_in}:2\n")
+        self.assertRegex(effective, rf"\nwidth = 1\.0 +# {config}:\d+\n")
+        self.assertRegex(self.done(scree, "config", "--defaults"), r"\nlength = 2\.0 +# default\n")
+        with open(drop_in, "w") as file:
+            file.write("[stop]\nlenght = 4.5\n")
+        refused = self.run_to_end(scree, "config", "--config", config)
+        self.assertEqual(refused.returncode, 1)
+        self.assertIn(f"{drop_in}:2: stop.lenght is not a setting; the nearest is stop.length",
+                      refused.stderr)  # fmt: skip
+
     def test_every_command_has_a_manual_page(self):
         root = self.unpack()
         overview = self.done(f"{root}/usr/bin/scree", "--help")

@@ -35,5 +35,6 @@ void add_picture(CLI::App& app);
 void add_replay(CLI::App& app);
 void add_record(CLI::App& app);
 void add_watch(CLI::App& app);
+void add_config(CLI::App& app);
 
 }  // namespace scree::cli

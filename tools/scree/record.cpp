@@ -91,12 +91,13 @@ double run(const std::vector<Recorder*>& recorders, double longest, Report& repo
 }
 
 void record(const Options& options) {
-  const Settings settings = value_or_fail(load_settings(options.config));
+  const Configuration configuration = value_or_fail(read_configuration(options.config));
+  const Settings& settings = configuration.settings;
   const fs::path config = options.config, folder = options.folder;
   value_or_fail(encoder::with_dbc(settings.encoder, config.parent_path()));
   LidarRecorder lidar(settings.lidar);
   make_folder(folder);
-  keep_config(config, settings, folder);
+  keep_config(config, configuration, folder);
   lidar.create(folder / "lidar.pcap");
   ImuRecorder imu(settings.imu, folder / "imu.pcap");
   CanRecorder can(settings.encoder.interface, folder / "can.log");

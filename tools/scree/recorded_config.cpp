@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <set>
@@ -30,11 +31,23 @@ void replace_quoted(std::string& toml, const std::string& name, const std::strin
   }
 }
 
+/// The file itself, or with drop-ins what it and they come to.
+std::string text_of(const fs::path& config, const Configuration& configuration) {
+  const bool is_one_file = std::ranges::all_of(
+      configuration.sources, [&](const auto& key) { return key.second.file == config.string(); });
+  if (!is_one_file) return effective_toml(configuration, true);
+  std::ifstream read(config, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(read), {}};
+  if (!read) throw Failure("cannot read " + config.string());
+  return text;
+}
+
 }  // namespace
 
-void keep_config(const fs::path& config, const Settings& settings, const fs::path& folder) {
-  std::ifstream read(config, std::ios::binary);
-  std::string toml{std::istreambuf_iterator<char>(read), {}};
+void keep_config(const fs::path& config, const Configuration& configuration,
+                 const fs::path& folder) {
+  const Settings& settings = configuration.settings;
+  std::string toml = text_of(config, configuration);
   const std::set<std::string> names = {settings.encoder.dbc, settings.detect_cloud.network,
                                        settings.detect_map.network, settings.detect_sweep.network};
   for (const std::string& name : names) {
@@ -53,9 +66,7 @@ void keep_config(const fs::path& config, const Settings& settings, const fs::pat
   std::ofstream write(file, std::ios::binary);
   write << toml;
   write.close();
-  if (!read || !write) {
-    throw Failure(fmt::format("cannot copy {} to {}", config.string(), file.string()));
-  }
+  if (!write) throw Failure(fmt::format("cannot copy {} to {}", config.string(), file.string()));
 }
 
 }  // namespace scree::cli

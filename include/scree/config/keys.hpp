@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include "scree/config/settings.hpp"
@@ -12,6 +13,10 @@ struct Key {
   double low, high;
   std::string_view meaning;
 };
+/// As it is written in messages: table.key.
+inline std::string full_name(const Key& key) {
+  return std::string(key.table) + "." + std::string(key.name);
+}
 
 /// Calls visit(Key, value&) for every stage setting of one of the two sets.
 template <class Detect, class Visit>

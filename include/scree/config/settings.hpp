@@ -241,7 +241,7 @@ struct Settings {
   }
 };
 
-/// Reads a TOML file over the defaults. The error names file, line, key and what is accepted.
+/// The settings of read_configuration().
 Result<Settings> load_settings(const std::filesystem::path& file);
 /// The same from text; `origin` stands for the file's name in errors.
 Result<Settings> parse_settings(std::string_view toml, const std::string& origin);

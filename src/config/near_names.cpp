@@ -1,9 +1,9 @@
-#include "near_names.hpp"
+#include "scree/config/near_names.hpp"
 
 #include <algorithm>
 #include <numeric>
 
-namespace scree::encoder {
+namespace scree {
 namespace {
 
 char lower(char c) {
@@ -28,18 +28,18 @@ std::size_t distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
-std::string near_names(std::string_view wanted, std::vector<std::string_view> names) {
-  constexpr std::size_t kMost = 3;
+std::string near_names(std::string_view wanted, std::vector<std::string_view> names,
+                       std::size_t most) {
   std::sort(names.begin(), names.end(), [&](std::string_view a, std::string_view b) {
     const std::size_t to_a = distance(wanted, a), to_b = distance(wanted, b);
     return to_a != to_b ? to_a < to_b : a < b;
   });
   names.erase(std::unique(names.begin(), names.end()), names.end());
   std::string text;
-  for (std::size_t i = 0; i < std::min(names.size(), kMost); ++i) {
+  for (std::size_t i = 0; i < std::min(names.size(), most); ++i) {
     text += (i == 0 ? "" : ", ") + std::string(names[i]);
   }
   return text;
 }
 
-}  // namespace scree::encoder
+}  // namespace scree

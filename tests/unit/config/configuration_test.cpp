@@ -1,0 +1,85 @@
+#include "scree/config/configuration.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "unit/temporary_folder.hpp"
+
+namespace scree {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class ConfigurationTest : public ::testing::Test {
+protected:
+  ConfigurationTest() { std::filesystem::create_directory(folder_ / "scree.d"); }
+
+  std::filesystem::path write(std::string_view toml) { return folder_.write("scree.toml", toml); }
+  std::string error_of(const std::filesystem::path& file) {
+    const auto configuration = read_configuration(file);
+    return configuration ? "no error" : configuration.error().message;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(ConfigurationTest, DropInsGoOverTheFileInTheOrderOfTheirNames) {
+  const auto file = write("[lidar]\nport = 4000\nposition_port = 4001\nmin_range = 0.7\n");
+  folder_.write("scree.d/20-second.toml", "[lidar]\n\nport = 6000\n");
+  folder_.write("scree.d/10-first.toml", "[lidar]\nport = 5000\nposition_port = 5001\n");
+  folder_.write("scree.d/30-kept-aside.toml.off", "[lidar]\nport = 7000\n");
+  const auto read = read_configuration(file);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->settings.lidar.port, 6000);
+  EXPECT_EQ(read->settings.lidar.position_port, 5001);
+  EXPECT_EQ(read->settings.lidar.min_range, 0.7);
+  EXPECT_THAT(read->source_of("lidar.port").text(), EndsWith("scree.d/20-second.toml:3"));
+  EXPECT_THAT(read->source_of("lidar.position_port").text(), EndsWith("10-first.toml:3"));
+  EXPECT_THAT(read->source_of("lidar.min_range").text(), EndsWith("scree.toml:4"));
+  EXPECT_EQ(read->source_of("lidar.max_range").text(), "default");
+}
+
+TEST_F(ConfigurationTest, MistakesInADropInNameIt) {
+  const auto file = write("[lidar]\nmax_range = 20.0\n");
+  folder_.write("scree.d/robot.toml", "[lidar]\nmin_range = 25.0\n");
+  EXPECT_THAT(error_of(file), HasSubstr("robot.toml:2: lidar.min_range must be below"))
+      << "of two that contradict each other";
+  folder_.write("scree.d/robot.toml", "[imu]\n\nbuad = 115200\n");
+  EXPECT_THAT(error_of(file), AllOf(HasSubstr("scree.d/robot.toml:3: imu.buad"),
+                                    HasSubstr("the nearest is imu.baud")));
+  folder_.write("scree.d/robot.toml", "[imu]\nbaud = 115200\nbaud = 921600\n");
+  EXPECT_THAT(error_of(file), AllOf(HasSubstr("scree.d/robot.toml:3"), HasSubstr("baud")));
+  std::filesystem::create_directory(folder_ / "scree.d/folder.toml");
+  EXPECT_THAT(error_of(file), HasSubstr("folder.toml")) << "the first of the files";
+}
+
+TEST_F(ConfigurationTest, AFileThatAKeyNamesMustBeThere) {
+  EXPECT_THAT(error_of(write("[encoder]\nsignal = \"A.B\"\nscale = 1.0\ndbc = \"none.dbc\"\n")),
+              AllOf(HasSubstr("scree.toml:4: encoder.dbc"), HasSubstr("none.dbc")));
+  EXPECT_THAT(error_of(write("[detect.map]\nnetwork = \"mine.txt\"\n")),
+              AllOf(HasSubstr("scree.toml:2: detect.map.network"), HasSubstr("mine.txt")));
+  folder_.write("mine.txt", "");
+  EXPECT_EQ(error_of(folder_ / "scree.toml"), "no error");
+}
+
+TEST_F(ConfigurationTest, EffectiveTextReadsBackToTheSameText) {
+  const auto file = write("[lidar]\nport = 4000\nmodel = \"puck_lite\"\n[stop]\nlength = 4.5\n");
+  folder_.write("scree.d/robot.toml", "[encoder]\ncan_id = 0x18FF1234\n");
+  const auto read = read_configuration(file);
+  ASSERT_TRUE(read) << read.error().message;
+  const std::string all = effective_toml(*read, false), set = effective_toml(*read, true);
+  EXPECT_THAT(all, AllOf(HasSubstr("port = 4000 "), HasSubstr("# default")));
+  EXPECT_THAT(set, AllOf(HasSubstr("can_id = 0x18FF1234"), HasSubstr("robot.toml:2"),
+                         Not(HasSubstr("# default")), Not(HasSubstr("[imu]"))));
+  for (const std::string& text : {all, set}) {
+    const auto again = parse_settings(text, "again");
+    ASSERT_TRUE(again) << again.error().message;
+    EXPECT_EQ(effective_toml({*again, {}}, false), effective_toml({read->settings, {}}, false));
+  }
+}
+
+}  // namespace
+}  // namespace scree

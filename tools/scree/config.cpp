@@ -1,0 +1,38 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <memory>
+#include <string>
+
+#include "commands.hpp"
+#include "scree/config/configuration.hpp"
+
+namespace scree::cli {
+namespace {
+
+struct Options {
+  std::string file = "/etc/scree/scree.toml";
+  bool defaults = false, only_set = false;
+};
+
+void print_config(const Options& options) {
+  const Configuration configuration =
+      options.defaults ? Configuration() : value_or_fail(read_configuration(options.file));
+  fmt::print("{}", effective_toml(configuration, options.only_set));
+}
+
+}  // namespace
+
+void add_config(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App& config = *app.add_subcommand(
+      "config", "The configuration that takes effect, and where each value comes from, as TOML");
+  CLI::Option* const file =
+      config.add_option("--config", options->file, "configuration; drop-ins lie in its folder *.d")
+          ->type_name("FILE")
+          ->capture_default_str();
+  config.add_flag("--set", options->only_set, "only what a file sets");
+  config.add_flag("--defaults", options->defaults, "without any file")->excludes(file);
+  config.callback([options] { print_config(*options); });
+}
+
+}  // namespace scree::cli
