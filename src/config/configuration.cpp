@@ -154,6 +154,9 @@ std::optional<Contradiction> contradiction(const DetectSettings& detect, std::st
   if (detect.max_edge_points > detect.max_points) {
     return both("max_edge_points", "must not be above", "max_points");
   }
+  if (detect.cluster_method == ClusterMethod::regions && !detect.uses_surface()) {
+    return both("cluster_method", "= \"regions\" needs the value \"surface\" of", "ground");
+  }
   return std::nullopt;
 }
 

@@ -62,6 +62,8 @@ Detector::Detector(const DetectSettings& settings, Network network)
       edge_cells_(count(settings.max_edge_points)),
       supervoxels_(count(settings.max_edge_points)),
       euclidean_(count(settings.max_edge_points)),
+      regions_(uses_regions() ? count(settings.max_edge_points) : 0,
+               uses_regions() ? count(settings.max_ground_cells) : 0),
       labels_(count(settings.max_edge_points)),
       sizes_(count(settings.max_edge_points)),
       clusters_(count(settings.max_edge_points)),
@@ -173,6 +175,13 @@ const EdgePoints& Detector::parted() {
   return parted_;
 }
 
+/// Clusters of single points.
+void Detector::take_labels(std::span<const std::uint32_t> labels, std::size_t count) {
+  std::ranges::copy(labels, labels_.begin());
+  sizes_.assign(count, 0);
+  for (const std::uint32_t label : labels) ++sizes_[label];
+}
+
 void Detector::find_clusters() {
   const EdgePoints& edges = parted();
   const auto tolerance = static_cast<float>(settings_.cluster_tolerance);
@@ -180,9 +189,10 @@ void Detector::find_clusters() {
   labels_.resize(edges.size());
   if (settings_.cluster_method == ClusterMethod::euclidean) {
     euclidean_.cluster(edges.points, tolerance);
-    std::ranges::copy(euclidean_.labels(), labels_.begin());
-    sizes_.assign(euclidean_.count(), 0);
-    for (const std::uint32_t label : labels_) ++sizes_[label];
+    take_labels(euclidean_.labels(), euclidean_.count());
+  } else if (uses_regions()) {
+    regions_.label(kept(), surface_, {tolerance, static_cast<float>(settings_.saddle)});
+    take_labels(regions_.labels(), regions_.count());
   } else {
     supervoxels_.segment(edges,
                          {.voxel_size = static_cast<float>(settings_.voxel_size),

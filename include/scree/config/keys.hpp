@@ -81,7 +81,12 @@ void for_each_detect_key(std::string_view table, Detect& detect, Visit&& visit) 
       "reach of the mean at each of the two positions");
   key("cluster_method", detect.cluster_method, "", 0, 0,
       "supervoxel clusters the centres of super-voxels (algorithm 2), euclidean the edge points "
-      "themselves (algorithm 1, the baseline)");
+      "themselves (algorithm 1, the baseline), regions the bodies on the raster of the ground: "
+      "seen "
+      "ground parts them, unseen ground does not");
+  key("saddle", detect.saddle, "", 0, 1,
+      "two tops of a region are two bodies where the saddle between them is lower than this share "
+      "of the lower top; 0: never");
   key("voxel_size", detect.voxel_size, "m", 0.001, 10, "voxels that super-voxels are made of");
   key("seed_distance", detect.seed_distance, "m", 0.001, 10,
       "Rseed: grid of the super-voxels' seeds; the paper's 0.05 needs a far denser cloud");
@@ -96,7 +101,7 @@ void for_each_detect_key(std::string_view table, Detect& detect, Visit&& visit) 
       "centres (or edge points) closer than this belong together: larger merges close obstacles, "
       "smaller splits rims");
   key("min_cluster_size", detect.min_cluster_size, "", 1, 100000,
-      "least number of super-voxels (or of edge points, with euclidean) of an obstacle");
+      "least number of super-voxels (or of points, but with supervoxel) of an obstacle");
   key("ground_inner", detect.ground_inner, "m", 0, 10,
       "the ground's height is taken from this far around a cluster's box ...");
   key("ground_outer", detect.ground_outer, "m", 0.001, 20, "... to this far");

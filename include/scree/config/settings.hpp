@@ -23,7 +23,7 @@ enum class GroundReference : std::uint8_t { ring, surface };
 /// Which points clusters are made of: the paper's edge points, or all that stand above or lie below
 /// the ground's surface.
 enum class Candidates : std::uint8_t { edges, bodies };
-enum class ClusterMethod : std::uint8_t { supervoxel, euclidean };
+enum class ClusterMethod : std::uint8_t { supervoxel, euclidean, regions };
 
 /// The words for an enum in a configuration file.
 template <class Enum>
@@ -52,7 +52,8 @@ inline constexpr std::array kNames<Candidates> = {
 template <>
 inline constexpr std::array kNames<ClusterMethod> = {
     std::pair{std::string_view("supervoxel"), ClusterMethod::supervoxel},
-    std::pair{std::string_view("euclidean"), ClusterMethod::euclidean}};
+    std::pair{std::string_view("euclidean"), ClusterMethod::euclidean},
+    std::pair{std::string_view("regions"), ClusterMethod::regions}};
 
 template <class Enum>
 constexpr std::string_view name_of(Enum value) {
@@ -192,6 +193,7 @@ struct DetectSettings {
   double suppression_radius = 0.11;
 
   ClusterMethod cluster_method = ClusterMethod::supervoxel;
+  double saddle = 0.4;
   double voxel_size = 0.08;
   double seed_distance = 0.25;
   double reflectivity_weight = 0.1;

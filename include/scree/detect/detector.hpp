@@ -4,6 +4,7 @@
 
 #include "scree/config/settings.hpp"
 #include "scree/core/obstacle.hpp"
+#include "scree/detect/body_regions.hpp"
 #include "scree/detect/clusters.hpp"
 #include "scree/detect/edge_points.hpp"
 #include "scree/detect/elevation_gradient.hpp"
@@ -71,12 +72,14 @@ private:
   void thin(PointView cloud);
   void choose_candidates();
   void find_edges();
+  bool uses_regions() const { return settings_.cluster_method == ClusterMethod::regions; }
   bool thins_edges() const {
     return settings_.suppression || settings_.candidates == Candidates::bodies;
   }
   void thin_edges();
   void keep_company();
   const EdgePoints& parted();
+  void take_labels(std::span<const std::uint32_t> labels, std::size_t count);
   void find_clusters();
   void measure_clusters();
   void recognise(FixedVector<Obstacle>& obstacles);
@@ -99,6 +102,7 @@ private:
   PlaneCells edge_cells_;
   Supervoxels supervoxels_;
   EuclideanClusters euclidean_;
+  BodyRegions regions_;
   FixedVector<std::uint32_t> labels_, sizes_;
   Clusters clusters_;
   GroundHeight ground_;

@@ -64,21 +64,6 @@ TEST(Settings, MistakesNameFileLineKeyAndWhatIsAccepted) {
   EXPECT_THAT(error_of("[lidar]\nmax_range = nan\n"), HasSubstr("out of range"));
   EXPECT_THAT(error_of("[detect.cloud]\nground_inner = 5\n"),
               AllOf(HasSubstr("robot.toml:2"), HasSubstr("ground_outer")));
-  EXPECT_THAT(error_of("[lidar]\nport = 1.5\n"), HasSubstr("whole number"));
-  EXPECT_THAT(error_of("[lidar]\nmodel = \"hdl64\"\n"),
-              AllOf(HasSubstr("lidar.model"), HasSubstr("\"puck_lite\"")));
-  EXPECT_THAT(error_of("[lidar]\ntranslation = [1, 2]\n"), HasSubstr("three numbers"));
-  EXPECT_THAT(error_of("[lidar]\n\nprot = 2368\n"),
-              AllOf(HasSubstr("robot.toml:3"),
-                    HasSubstr("lidar.prot is not a setting; the nearest is lidar.port")));
-  EXPECT_THAT(error_of("[radar]\nx = 1\n"),
-              HasSubstr("radar is not a setting; the nearest is lidar"));
-  EXPECT_THAT(error_of("lidar = 3\n"), HasSubstr("lidar is a table"));
-  EXPECT_THAT(error_of("[lidar\n"), HasSubstr("robot.toml:1"));
-  EXPECT_THAT(error_of("[lidar]\nmin_range = 31\n"), HasSubstr("below lidar.max_range"));
-  EXPECT_THAT(error_of("[lidar]\nmax_range = nan\n"), HasSubstr("out of range"));
-  EXPECT_THAT(error_of("[detect.cloud]\nground_inner = 5\n"),
-              AllOf(HasSubstr("robot.toml:2"), HasSubstr("ground_outer")));
   EXPECT_THAT(error_of("[detect.map]\n\nground = \"ring\"\ncandidates = \"edges\"\n"),
               AllOf(HasSubstr("robot.toml:3"), HasSubstr("\"regions\" needs")));
   EXPECT_THAT(error_of("[lidar]\nport = 1\nport = 2\n"),

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "scree/detect/edge_points.hpp"
+#include "scree/detect/ground_surface.hpp"
+#include "scree/detect/key_sort.hpp"
+
+namespace scree {
+
+struct BodyRegionSettings {
+  float tolerance;  ///< bodies closer than this with nothing seen between them are one, metres
+  float saddle;     ///< two tops are two bodies above a saddle lower than this share of the lower
+};
+
+/// Clusters of the points above the ground's surface, and of those below it, on the surface's
+/// raster. A cell that was not seen counts as what was seen nearest to it, up to half a tolerance
+/// away; cells of bodies that then touch belong together. So shadows and the gaps between rings
+/// part nothing, and ground that was seen between two rocks does. Rocks that touch are parted by
+/// the watershed of their heights (Vincent and Soille, 1991), merged by the tops' prominence.
+class BodyRegions {
+public:
+  BodyRegions(std::size_t max_points, std::size_t max_cells);
+
+  /// @param bodies above (height > 0) or below the surface; all other points of the cloud that
+  /// `surface` was built from count as seen ground
+  void label(const EdgePoints& bodies, const GroundSurface& surface,
+             const BodyRegionSettings& settings);
+
+  /// Region of each point, numbered from 0.
+  std::span<const std::uint32_t> labels() const { return labels_; }
+  std::size_t count() const { return count_; }
+
+private:
+  enum State : std::uint8_t { unseen, clear, body };
+  enum class Side : std::uint8_t { above, below };
+
+  void mark(const EdgePoints& bodies, Side side, const GroundSurface& surface);
+  void grow(bool diagonally, float share);
+  void join(float saddle);
+  void number(const EdgePoints& bodies, Side side, const GroundSurface& surface);
+  std::uint32_t root(std::uint32_t cell);
+
+  std::size_t columns_ = 0;
+  FixedVector<State> state_, grown_;
+  FixedVector<float> top_, grown_top_;  // of the bodies in a cell, metres above the surface
+  KeySort order_;                       // cells of bodies, the highest first
+  FixedVector<std::uint32_t> parent_;   // union-find over them; a root is its region's top
+  FixedVector<std::uint32_t> number_;   // of the region whose root a cell is
+  FixedVector<std::uint32_t> labels_;
+  std::size_t count_ = 0;
+};
+
+}  // namespace scree

@@ -1,0 +1,128 @@
+#include "scree/detect/body_regions.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "scree/detect/supervoxels.hpp"
+
+namespace scree {
+namespace {
+
+/// The neighbours of a cell: to its four sides, then at its four corners. The raster's outermost
+/// cells hold no point.
+std::array<std::size_t, 8> neighbours(std::size_t cell, std::size_t columns) {
+  return {cell - 1,           cell + 1,           cell - columns,     cell + columns,
+          cell - columns - 1, cell - columns + 1, cell + columns - 1, cell + columns + 1};
+}
+
+}  // namespace
+
+BodyRegions::BodyRegions(std::size_t max_points, std::size_t max_cells)
+    : state_(max_cells),
+      grown_(max_cells),
+      top_(max_cells),
+      grown_top_(max_cells),
+      order_(max_cells),
+      parent_(max_cells),
+      number_(max_cells),
+      labels_(max_points) {}
+
+void BodyRegions::label(const EdgePoints& bodies, const GroundSurface& surface,
+                        const BodyRegionSettings& settings) {
+  columns_ = surface.columns();
+  labels_.assign(bodies.size(), kNoLabel);
+  count_ = 0;
+  const auto steps = static_cast<int>(std::lround(settings.tolerance / 2 / surface.cell_size()));
+  for (const Side side : {Side::above, Side::below}) {
+    mark(bodies, side, surface);
+    for (int step = 0; step < steps; ++step) {
+      // To the sides and to the corners by turns: nearly a circle. Tops fall off in even steps.
+      const auto left = static_cast<float>(steps - step);
+      grow(step % 2 != 0, left / (left + 1));
+    }
+    join(settings.saddle);
+    number(bodies, side, surface);
+  }
+}
+
+void BodyRegions::mark(const EdgePoints& bodies, Side side, const GroundSurface& surface) {
+  const std::size_t cells = columns_ * surface.rows();
+  state_.resize(cells);
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    state_[cell] = surface.points_in(cell) > 0 ? clear : unseen;
+  }
+  top_.assign(cells, 0);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if ((bodies.height[i] > 0) != (side == Side::above)) continue;
+    const std::size_t cell = surface.cell_at(bodies.points.x[i], bodies.points.y[i]);
+    state_[cell] = body;
+    // Holes have no tops: their floors are seldom seen, and what is seen of a wall has any depth.
+    top_[cell] = std::max(top_[cell], bodies.height[i]);
+  }
+}
+
+/// Every unseen cell becomes what a neighbour is, a body before anything else.
+/// @param share of the neighbour's top that it gets
+void BodyRegions::grow(bool diagonally, float share) {
+  grown_.resize(state_.size());
+  grown_top_.resize(state_.size());
+  std::ranges::copy(state_, grown_.begin());
+  std::ranges::copy(top_, grown_top_.begin());
+  for (std::size_t row = columns_; row + columns_ < state_.size(); row += columns_) {
+    for (std::size_t cell = row + 1; cell + 1 < row + columns_; ++cell) {
+      if (state_[cell] != unseen) continue;
+      const auto around = neighbours(cell, columns_);
+      for (const std::size_t other : std::span(around).first(diagonally ? 8 : 4)) {
+        grown_[cell] = std::max(grown_[cell], state_[other]);
+        grown_top_[cell] = std::max(grown_top_[cell], share * top_[other]);
+      }
+    }
+  }
+  std::swap(state_, grown_);
+  std::swap(top_, grown_top_);
+}
+
+/// Lets the regions rise out of a falling flood: a cell joins those that it touches, and where two
+/// meet they become one unless both rise well above that place.
+void BodyRegions::join(float saddle) {
+  constexpr float kHighest = 65, kStep = 0.001F, kLeastRise = 0.1F;  // metres
+  order_.clear();
+  for (std::size_t cell = 0; cell < state_.size(); ++cell) {
+    if (state_[cell] != body) continue;
+    order_.push(static_cast<std::uint64_t>(std::max(kHighest - top_[cell], 0.0F) / kStep), cell);
+  }
+  order_.sort();
+  parent_.assign(state_.size(), kNoLabel);
+  for (std::size_t i = 0; i < order_.size(); ++i) {
+    const std::uint32_t cell = order_.index(i);
+    parent_[cell] = cell;
+    for (const std::size_t other : neighbours(cell, columns_)) {
+      if (parent_[other] == kNoLabel) continue;
+      std::uint32_t higher = root(cell), lower = root(static_cast<std::uint32_t>(other));
+      if (top_[higher] < top_[lower]) std::swap(higher, lower);
+      const bool both_rise =
+          top_[lower] - top_[cell] > kLeastRise && top_[cell] < saddle * top_[lower];
+      if (!both_rise) parent_[lower] = higher;
+    }
+  }
+}
+
+void BodyRegions::number(const EdgePoints& bodies, Side side, const GroundSurface& surface) {
+  number_.assign(state_.size(), kNoLabel);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if ((bodies.height[i] > 0) != (side == Side::above)) continue;
+    const std::size_t cell = surface.cell_at(bodies.points.x[i], bodies.points.y[i]);
+    std::uint32_t& number = number_[root(static_cast<std::uint32_t>(cell))];
+    if (number == kNoLabel) number = static_cast<std::uint32_t>(count_++);
+    labels_[i] = number;
+  }
+}
+
+std::uint32_t BodyRegions::root(std::uint32_t cell) {
+  while (parent_[cell] != cell) cell = parent_[cell] = parent_[parent_[cell]];
+  return cell;
+}
+
+}  // namespace scree

@@ -1,0 +1,143 @@
+#include "scree/detect/body_regions.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <map>
+#include <set>
+
+#include "scree/detect/detector.hpp"
+#include "scree/detect/euclidean_clusters.hpp"
+
+namespace scree {
+namespace {
+
+constexpr float kBody = 0.06F, kTolerance = 0.3F, kSaddle = 0.4F;
+
+/// Level ground of 6 m by 6 m with what stands on it.
+class BodyRegionsTest : public ::testing::Test {
+protected:
+  using Height = std::function<float(float x, float y)>;  // NaN: not seen
+
+  void look_at(const Height& height) {
+    cloud_.clear();
+    bodies_.clear();
+    constexpr float kStep = 0.04F, kReach = 3;
+    for (float y = -kReach; y < kReach; y += kStep) {
+      for (float x = -kReach; x < kReach; x += kStep) {
+        const float z = height(x, y);
+        if (std::isnan(z)) continue;
+        cloud_.push_back(x, y, z, 0);
+        if (std::abs(z) >= kBody) bodies_.push_back(cloud_, cloud_.size() - 1, 0, 0, z);
+      }
+    }
+    surface_.build(cloud_, surface_settings(DetectSettings::for_map()));
+    regions_.label(bodies_, surface_, {kTolerance, kSaddle});
+  }
+
+  std::uint32_t label_at(float x, float y) const {
+    std::size_t nearest = 0;
+    float least = INFINITY;
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      const float away = std::hypot(bodies_.points.x[i] - x, bodies_.points.y[i] - y);
+      if (away < least) {
+        least = away;
+        nearest = i;
+      }
+    }
+    return regions_.labels()[nearest];
+  }
+
+  PointCloud cloud_{1 << 16};
+  EdgePoints bodies_{1 << 16};
+  GroundSurface surface_{1 << 16, 1 << 16};
+  BodyRegions regions_{1 << 16, 1 << 16};
+};
+
+float rock(float x, float y, float at_x, float radius, float height) {
+  const float away = std::hypot(x - at_x, y) / radius;
+  return away < 1 ? height * std::sqrt(1 - away * away) : 0;
+}
+
+TEST_F(BodyRegionsTest, SeenGroundPartsRocksThatAreNearerThanTheTolerance) {
+  look_at([](float x, float y) {
+    return std::max(rock(x, y, -0.5F, 0.4F, 0.3F), rock(x, y, 0.5F, 0.4F, 0.3F));
+  });
+  EXPECT_EQ(regions_.count(), 2U);
+  EXPECT_NE(label_at(-0.5F, 0), label_at(0.5F, 0));
+}
+
+TEST_F(BodyRegionsTest, WhatWasNotSeenPartsNothing) {
+  const auto with_gap = [](float gap) {
+    return
+        [gap](float x, float y) { return std::abs(x) < gap / 2 ? NAN : rock(x, y, 0, 0.8F, 0.3F); };
+  };
+  look_at(with_gap(0.2F));
+  EXPECT_EQ(regions_.count(), 1U);
+  look_at(with_gap(0.6F));
+  EXPECT_EQ(regions_.count(), 2U) << "wider than the tolerance";
+}
+
+TEST_F(BodyRegionsTest, RocksThatTouchArePartedAtTheSaddle) {
+  const auto two_tops = [](float saddle) {
+    return [saddle](float x, float y) {
+      const float tops = std::max(rock(x, y, -0.5F, 0.45F, 0.6F), rock(x, y, 0.5F, 0.45F, 0.4F));
+      return std::abs(x) < 0.5F && std::abs(y) < 0.2F ? std::max(tops, saddle) : tops;
+    };
+  };
+  look_at(two_tops(0.1F));
+  EXPECT_EQ(regions_.count(), 2U);
+  EXPECT_NE(label_at(-0.5F, 0), label_at(0.5F, 0));
+  look_at(two_tops(0.3F));
+  EXPECT_EQ(regions_.count(), 1U) << "the saddle is higher than its share of the lower top";
+}
+
+TEST_F(BodyRegionsTest, ALowRidgeOfUnevenHeightStaysWhole) {
+  look_at([](float x, float y) {
+    return std::abs(y) < 0.15F && std::abs(x) < 1.5F ? 0.11F + 0.04F * std::sin(9 * x) : 0.0F;
+  });
+  EXPECT_EQ(regions_.count(), 1U);
+}
+
+TEST_F(BodyRegionsTest, AHoleAndTheRockOnItsRimAreTwo) {
+  look_at([](float x, float y) {
+    return rock(x, y, 0.4F, 0.4F, 0.4F) - rock(x, y, -0.4F, 0.4F, 0.4F);
+  });
+  EXPECT_EQ(regions_.count(), 2U);
+  EXPECT_NE(label_at(-0.4F, 0), label_at(0.4F, 0));
+}
+
+TEST_F(BodyRegionsTest, HolesAreNotPartedByTheirDepth) {
+  look_at([](float x, float y) {
+    const float deep = std::min(-rock(x, y, -0.5F, 0.45F, 0.6F), -rock(x, y, 0.5F, 0.45F, 0.4F));
+    return std::abs(x) < 0.5F && std::abs(y) < 0.2F ? std::min(deep, -0.1F) : deep;
+  });
+  EXPECT_EQ(regions_.count(), 1U);
+}
+
+TEST_F(BodyRegionsTest, FarApartItAgreesWithEuclideanClusters) {
+  look_at([](float x, float y) {
+    float height = 0;
+    for (const float at : {-2.0F, 0.0F, 2.0F})
+      height = std::max(height, rock(x, y, at, 0.4F, 0.3F));
+    return height;
+  });
+  EuclideanClusters euclidean(1 << 16);
+  euclidean.cluster(bodies_.points, kTolerance);
+  ASSERT_EQ(regions_.count(), euclidean.count());
+  std::map<std::uint32_t, std::set<std::uint32_t>> partners;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    partners[euclidean.labels()[i]].insert(regions_.labels()[i]);
+  }
+  for (const auto& [label, others] : partners) EXPECT_EQ(others.size(), 1U) << label;
+}
+
+TEST_F(BodyRegionsTest, NothingGivesNoRegion) {
+  look_at([](float, float) { return 0.0F; });
+  EXPECT_EQ(regions_.count(), 0U);
+  EXPECT_TRUE(regions_.labels().empty());
+}
+
+}  // namespace
+}  // namespace scree
