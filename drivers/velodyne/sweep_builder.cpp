@@ -1,6 +1,7 @@
 #include "scree/drivers/velodyne/sweep_builder.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace scree::velodyne {
 namespace {
@@ -26,7 +27,7 @@ bool SweepBuilder::passes_cut(float azimuth, std::int64_t shot_ns) {
   if (shot_ns - begin_ns_ > kLongestSweepNs) return true;
   if (behind_cut_ > before - kStepBack) return false;
   if (was_cut_ && shot_ns - last_cut_ns_ < kShortestTurnNs) return false;
-  was_cut_ = true;
+  was_cut_ = ends_at_cut_ = true;
   last_cut_ns_ = shot_ns;
   return true;
 }
@@ -75,6 +76,8 @@ void SweepBuilder::finish() {
   const auto length = static_cast<std::int32_t>(end_ns - begin_ns_);
   for (std::int32_t& time : sweep_.time_ns) time -= length;
   sweep_.end_ns = end_ns + to_host_ns_;
+  sweep_.is_whole = begins_at_cut_ && ends_at_cut_;
+  begins_at_cut_ = std::exchange(ends_at_cut_, false);
   on_sweep_(sweep_);
   sweep_.clear();
 }

@@ -15,6 +15,7 @@ struct Sweep {
   FixedVector<std::int32_t> time_ns;  ///< of each point, relative to end_ns, zero or below
   std::uint32_t packets = 0;          ///< data packets that gave it points
   std::uint32_t dropped = 0;          ///< points that did not fit
+  bool is_whole = true;               ///< a full turn, unlike a lidar's first sweep
 
   Sweep() = default;
   explicit Sweep(std::size_t capacity) : points(capacity), time_ns(capacity) {}

@@ -18,6 +18,7 @@ struct Seen {
   std::int64_t begin_ns, end_ns;
   std::size_t points;
   std::uint32_t packets;
+  bool is_whole;
 };
 
 /// A VLP-16 that turns evenly and sees a wall 5 m away, and the stream that listens to it.
@@ -26,7 +27,7 @@ public:
   explicit Sensor(const LidarSettings& settings = {})
       : stream_(std::make_unique<LidarStream>(settings, [this](Sweep& sweep) {
           seen.push_back({sweep.end_ns + (sweep.points.empty() ? 0 : sweep.time_ns[0]),
-                          sweep.end_ns, sweep.points.size(), sweep.packets});
+                          sweep.end_ns, sweep.points.size(), sweep.packets, sweep.is_whole});
           for (std::size_t i = 1; i < sweep.time_ns.size(); ++i) {
             EXPECT_GE(sweep.time_ns[i], sweep.time_ns[i - 1]);
           }
@@ -96,6 +97,7 @@ TEST(LidarStream, CutsATurnWhereTheAzimuthPasses) {
         ASSERT_NEAR(static_cast<double>(sensor.seen.size()), static_cast<double>(turns), 1.1);
         for (std::size_t i = 1; i + 1 < sensor.seen.size(); ++i) {
           const Seen& sweep = sensor.seen[i];
+          EXPECT_TRUE(sweep.is_whole);
           EXPECT_NEAR(static_cast<double>(sweep.end_ns - sweep.begin_ns), 1e9 / rate, 2e5);
           // All the shots of a turn; equal dual returns count once.
           EXPECT_NEAR(static_cast<double>(sweep.points), 16 / (55.296e-6 * rate), 40);
@@ -105,6 +107,8 @@ TEST(LidarStream, CutsATurnWhereTheAzimuthPasses) {
           EXPECT_NEAR(static_cast<double>(sweep.end_ns - kEpoch - sensor.delay_ns) * 1e-9,
                       ends_at + (cut == 0.0 ? 1 / rate : 0.0), 3e-4);
         }
+        EXPECT_FALSE(sensor.seen.front().is_whole);
+        EXPECT_FALSE(sensor.seen.back().is_whole);
         EXPECT_EQ(sensor.counters().lost, 0U);
         EXPECT_EQ(sensor.counters().dropped, 0U);
       }
@@ -131,6 +135,7 @@ TEST(LidarStream, ASensorThatStandsStillGivesSweepsByTime) {
   ASSERT_GE(sensor.seen.size(), 8U);
   for (const Seen& sweep : sensor.seen) {
     EXPECT_NEAR(static_cast<double>(sweep.end_ns - sweep.begin_ns), kLongestSweepNs, 1e5);
+    EXPECT_FALSE(sweep.is_whole);
   }
   EXPECT_EQ(sensor.counters().dropped, 0U);
 }
@@ -147,6 +152,18 @@ TEST(LidarStream, AWaveringAzimuthAtTheCutMakesNoShreds) {
     sensor.send(packet);
   }
   EXPECT_LE(sensor.seen.size(), 140U);
+}
+
+TEST(LidarStream, KnowsHowLongThereHasBeenNoReturn) {
+  Sensor sensor;
+  sensor.send_for(0.5);
+  EXPECT_LT(sensor.stream().without_return_ns(), kBlockNs);
+  const std::int64_t begin = sensor.elapsed_ns();
+  while (sensor.elapsed_ns() - begin < kSecond / 4) sensor.send(sensor.packet().all_shots(0, 0));
+  EXPECT_NEAR(static_cast<double>(sensor.stream().without_return_ns()),
+              static_cast<double>(sensor.elapsed_ns() - begin), 1e5);
+  sensor.send();
+  EXPECT_LT(sensor.stream().without_return_ns(), kBlockNs);
 }
 
 TEST(LidarStream, EmptyTurnsAreHandedOutToo) {

@@ -56,6 +56,8 @@ public:
   void flush();
 
   const LidarCounters& counters() const { return counters_; }
+  /// How long there has been no return in what the sensor sent.
+  std::int64_t without_return_ns() const { return builder_.without_return_ns(); }
   /// Whether product byte 0x21 was seen and what it turned out to be; see sentence().
   Firmware firmware() const { return judge_.firmware(); }
   /// The host's time of an edge of the pulse per second that the sensor is locked to.

@@ -33,6 +33,9 @@ public:
   /// Hands out what there is of the sweep under way, if anything.
   void finish();
 
+  /// How long before the last shot the last return came, by the sensor's clock.
+  std::int64_t without_return_ns() const { return last_shot_ns_ - last_return_ns_; }
+
 private:
   bool passes_cut(float azimuth, std::int64_t shot_ns);
 
@@ -44,6 +47,7 @@ private:
   std::int64_t to_host_ns_ = 0;
   float behind_cut_ = 0;  ///< how far the last shot lay behind the cut; hundredths of a degree
   bool open_ = false, was_cut_ = false;
+  bool begins_at_cut_ = false, ends_at_cut_ = false;
 };
 
 }  // namespace scree::velodyne
