@@ -44,31 +44,35 @@ bool Pipeline::is_covered(std::int64_t end_ns) {
 }
 
 const ObstacleList& Pipeline::process(const Sweep& sweep) {
+  timer_.start();
   sensors_->gather();
   uses_map_ = uses_map_ || sensors_->has_motion();
   list_.stamp_ns = sweep.end_ns;
   if (uses_map_) {
-    mapper_->add(sweep, *sensors_);
+    mapper_->add(sweep, *sensors_, timer_);
     detect_in_map();
   } else {
     detect_in_sweep(sweep);
   }
+  has_looked_ = sweep.is_whole && !ground().empty();
   return list_;
 }
 
 void Pipeline::detect_in_map() {
   const RollingMap& map = mapper_->map();
   list_.pose = mapper_->pose();
-  map_detector_.detect(map.cloud(), found_);
+  map_detector_.detect(map.cloud(), found_, timer_);
   for (Obstacle& obstacle : found_) obstacle.center += map.origin();
   tracker_.update(
       list_.stamp_ns, list_.pose.translation, {found_.data(), found_.size()},
       [&map](const Eigen::Vector3d& place) { return map.sight(place); }, list_.obstacles);
+  timer_.done(Stage::tracking);
 }
 
 void Pipeline::detect_in_sweep(const Sweep& sweep) {
   deskew(sweep, lidar_, still_, sweep_);
-  sweep_detector_.detect(sweep_.points, list_.obstacles);
+  timer_.done(Stage::motion);
+  sweep_detector_.detect(sweep_.points, list_.obstacles, timer_);
 }
 
 StageCounts Pipeline::counts() const {

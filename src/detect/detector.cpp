@@ -75,15 +75,27 @@ Detector::Detector(const DetectSettings& settings, Network network)
   limit_ = common_reach(settings_, gradient_, suppression_);
 }
 
-void Detector::detect(PointView cloud, FixedVector<Obstacle>& obstacles) {
+void Detector::detect(PointView cloud, FixedVector<Obstacle>& obstacles, StageTimer& timer) {
   counts_ = {.input = cloud.size()};
   thin(cloud);
+  timer.done(Stage::voxel_grid);
   choose_candidates();
+  timer.done(Stage::surface);
   find_edges();
+  timer.done(Stage::gradient);
   thin_edges();
-  find_clusters();
+  timer.done(Stage::suppression);
+  const EdgePoints& edges = parted();
+  if (uses_supervoxels()) {
+    grow_supervoxels(edges);
+    timer.done(Stage::supervoxels);
+  }
+  find_clusters(edges);
+  timer.done(Stage::clusters);
   measure_clusters();
+  timer.done(Stage::features);
   recognise(obstacles);
+  timer.done(Stage::network);
 }
 
 void Detector::thin(PointView cloud) {
@@ -151,8 +163,7 @@ void Detector::thin_edges() {
 void Detector::keep_company() {
   constexpr float kReach = 1.5F;  // in units of the clusters' tolerance
   euclidean_.cluster(edges_.points, kReach * static_cast<float>(settings_.cluster_tolerance));
-  sizes_.assign(euclidean_.count(), 0);
-  for (const std::uint32_t label : euclidean_.labels()) ++sizes_[label];
+  count_members(euclidean_.labels(), euclidean_.count());
   kept_.clear();
   for (std::size_t i = 0; i < edges_.size(); ++i) {
     if (sizes_[euclidean_.labels()[i]] < 2) continue;
@@ -175,43 +186,45 @@ const EdgePoints& Detector::parted() {
   return parted_;
 }
 
-/// Clusters of single points.
-void Detector::take_labels(std::span<const std::uint32_t> labels, std::size_t count) {
-  std::ranges::copy(labels, labels_.begin());
-  sizes_.assign(count, 0);
-  for (const std::uint32_t label : labels) ++sizes_[label];
+void Detector::grow_supervoxels(const EdgePoints& edges) {
+  supervoxels_.segment(edges,
+                       {.voxel_size = static_cast<float>(settings_.voxel_size),
+                        .seed_distance = static_cast<float>(settings_.seed_distance),
+                        .reflectivity_weight = static_cast<float>(settings_.reflectivity_weight),
+                        .spatial_weight = static_cast<float>(settings_.spatial_weight),
+                        .normal_weight = static_cast<float>(settings_.normal_weight)});
+  counts_.blocks = supervoxels_.blocks();
+  supervoxels_.remove_small(static_cast<std::uint32_t>(settings_.min_block_points));
+  counts_.blocks_kept = supervoxels_.blocks();
 }
 
-void Detector::find_clusters() {
-  const EdgePoints& edges = parted();
+void Detector::find_clusters(const EdgePoints& edges) {
   const auto tolerance = static_cast<float>(settings_.cluster_tolerance);
   counts_.kept = edges.size();
   labels_.resize(edges.size());
-  if (settings_.cluster_method == ClusterMethod::euclidean) {
-    euclidean_.cluster(edges.points, tolerance);
-    take_labels(euclidean_.labels(), euclidean_.count());
-  } else if (uses_regions()) {
-    regions_.label(kept(), surface_, {tolerance, static_cast<float>(settings_.saddle)});
-    take_labels(regions_.labels(), regions_.count());
-  } else {
-    supervoxels_.segment(edges,
-                         {.voxel_size = static_cast<float>(settings_.voxel_size),
-                          .seed_distance = static_cast<float>(settings_.seed_distance),
-                          .reflectivity_weight = static_cast<float>(settings_.reflectivity_weight),
-                          .spatial_weight = static_cast<float>(settings_.spatial_weight),
-                          .normal_weight = static_cast<float>(settings_.normal_weight)});
-    counts_.blocks = supervoxels_.blocks();
-    supervoxels_.remove_small(static_cast<std::uint32_t>(settings_.min_block_points));
-    counts_.blocks_kept = supervoxels_.blocks();
+  if (uses_supervoxels()) {
     euclidean_.cluster(supervoxels_.centers(), tolerance);
-    sizes_.assign(euclidean_.count(), 0);
-    for (const std::uint32_t label : euclidean_.labels()) ++sizes_[label];
     std::ranges::transform(supervoxels_.labels(), labels_.begin(), [&](std::uint32_t block) {
       return block == kNoLabel ? kNoLabel : euclidean_.labels()[block];
     });
+    count_members(euclidean_.labels(), euclidean_.count());
+  } else if (uses_regions()) {
+    regions_.label(kept(), surface_, {tolerance, static_cast<float>(settings_.saddle)});
+    std::ranges::copy(regions_.labels(), labels_.begin());
+    count_members(labels_, regions_.count());
+  } else {
+    euclidean_.cluster(edges.points, tolerance);
+    std::ranges::copy(euclidean_.labels(), labels_.begin());
+    count_members(labels_, euclidean_.count());
   }
   clusters_.gather(kept(), labels_, sizes_, static_cast<std::uint32_t>(settings_.min_cluster_size));
   counts_.clusters = clusters_.all().size();
+}
+
+/// Of each cluster: points or super-voxels.
+void Detector::count_members(std::span<const std::uint32_t> labels, std::size_t clusters) {
+  sizes_.assign(clusters, 0);
+  for (const std::uint32_t label : labels) ++sizes_[label];
 }
 
 void Detector::measure_clusters() {

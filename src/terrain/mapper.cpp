@@ -19,7 +19,7 @@ Mapper::Mapper(const Settings& settings)
       surfels_(kSurfel),
       map_(settings.map) {}
 
-void Mapper::add(const Sweep& sweep, const SyncBuffer& sensors) {
+void Mapper::add(const Sweep& sweep, const SyncBuffer& sensors, StageTimer& timer) {
   const std::int64_t begin_ns = sweep.end_ns + (sweep.points.empty() ? 0 : sweep.time_ns[0]);
   const Pose before = filter_.pose();
   step_ = dead_reckoning_.advance(sensors, begin_ns, sweep.end_ns, track_);
@@ -31,10 +31,15 @@ void Mapper::add(const Sweep& sweep, const SyncBuffer& sensors) {
     map_.clear();
   }
   deskew(sweep, lidar_, track_, sweep_);
+  timer.done(Stage::motion);
   outcome_ = {};
-  if (registers_) correct();
+  if (registers_) {
+    correct();
+    timer.done(Stage::registration);
+  }
   assume_motion(before);
   map_.add(sweep_, filter_.pose(), sweep.end_ns);
+  timer.done(Stage::map);
 }
 
 void Mapper::correct() {

@@ -5,6 +5,7 @@
 
 #include "scree/config/settings.hpp"
 #include "scree/core/obstacle.hpp"
+#include "scree/core/stage_times.hpp"
 #include "scree/core/sweep.hpp"
 #include "scree/detect/detector.hpp"
 #include "scree/detect/tracker.hpp"
@@ -34,6 +35,15 @@ public:
   /// From the next sweep on.
   void set_tracking(const TrackingSettings& settings) { tracker_.set(settings); }
 
+  /// Whether the last list says what is there, so that an empty one says that nothing is: the sweep
+  /// was a whole turn, and where there is a map it holds points, as it does not after its first
+  /// sweep.
+  bool has_looked() const { return has_looked_; }
+  /// From the next sweep on the stages are timed on that clock.
+  void time_stages(StageTimer::Clock clock) { timer_ = StageTimer(clock); }
+
+  /// How long the stages of the last list took; none without time_stages().
+  const StageTimes& stage_times() const { return timer_.times(); }
   /// What found the obstacles of the last list, and in which points.
   const Detector& detector() const { return uses_map_ ? map_detector_ : sweep_detector_; }
   const PointCloud& ground() const { return uses_map_ ? mapper_->map().cloud() : sweep_.points; }
@@ -56,7 +66,8 @@ private:
   DeskewedSweep sweep_;  // of a robot that stands
   FixedVector<Obstacle> found_;
   ObstacleList list_;
-  bool uses_map_ = false;
+  StageTimer timer_;
+  bool uses_map_ = false, has_looked_ = false;
 };
 
 /// The weights of a set of stages.

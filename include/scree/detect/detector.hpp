@@ -4,6 +4,7 @@
 
 #include "scree/config/settings.hpp"
 #include "scree/core/obstacle.hpp"
+#include "scree/core/stage_times.hpp"
 #include "scree/detect/body_regions.hpp"
 #include "scree/detect/clusters.hpp"
 #include "scree/detect/edge_points.hpp"
@@ -52,7 +53,12 @@ public:
 
   /// Finds obstacles in a cloud in a gravity-aligned frame (z up) and writes them, numbered from 1,
   /// in that frame.
-  void detect(PointView cloud, FixedVector<Obstacle>& obstacles);
+  /// @param timer started; takes the time of each stage
+  void detect(PointView cloud, FixedVector<Obstacle>& obstacles, StageTimer& timer);
+  void detect(PointView cloud, FixedVector<Obstacle>& obstacles) {
+    StageTimer none;
+    detect(cloud, obstacles, none);
+  }
 
   const StageCounts& counts() const { return counts_; }
 
@@ -79,8 +85,9 @@ private:
   void thin_edges();
   void keep_company();
   const EdgePoints& parted();
-  void take_labels(std::span<const std::uint32_t> labels, std::size_t count);
-  void find_clusters();
+  void grow_supervoxels(const EdgePoints& edges);
+  void find_clusters(const EdgePoints& edges);
+  void count_members(std::span<const std::uint32_t> labels, std::size_t clusters);
   void measure_clusters();
   void recognise(FixedVector<Obstacle>& obstacles);
 

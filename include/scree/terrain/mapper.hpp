@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "scree/config/settings.hpp"
+#include "scree/core/stage_times.hpp"
 #include "scree/core/sweep.hpp"
 #include "scree/motion/dead_reckoning.hpp"
 #include "scree/motion/deskew.hpp"
@@ -21,7 +22,12 @@ public:
   explicit Mapper(const Settings& settings);
 
   /// @param sensors gathered, and covering the sweep as far as they ever will
-  void add(const Sweep& sweep, const SyncBuffer& sensors);
+  /// @param timer started; takes the time of each stage
+  void add(const Sweep& sweep, const SyncBuffer& sensors, StageTimer& timer);
+  void add(const Sweep& sweep, const SyncBuffer& sensors) {
+    StageTimer none;
+    add(sweep, sensors, none);
+  }
 
   /// `base` in `odom` at the end of the last sweep.
   const Pose& pose() const { return filter_.pose(); }

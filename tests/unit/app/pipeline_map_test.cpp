@@ -72,6 +72,34 @@ TEST_F(PipelineMap, TakesSweepsByThemselvesUntilAMotionSensorSpeaks) {
   EXPECT_TRUE(pipeline_.uses_map()) << "also when they fall silent";
 }
 
+TEST_F(PipelineMap, HasNotLookedWithItsFirstSweepNorWithAPartOfATurn) {
+  go(1, false);
+  EXPECT_TRUE(pipeline_.has_looked()) << "a sweep by itself";
+  go(1);
+  EXPECT_TRUE(pipeline_.ground().empty()) << "no second sweep has confirmed a point";
+  EXPECT_FALSE(pipeline_.has_looked());
+  go(1);
+  EXPECT_TRUE(pipeline_.has_looked());
+  sweep_.is_whole = false;
+  go(1);
+  EXPECT_FALSE(pipeline_.has_looked());
+}
+
+TEST_F(PipelineMap, TimesTheStagesThatRun) {
+  const auto time_of = [&](Stage stage) {
+    return pipeline_.stage_times()[static_cast<std::size_t>(stage)];
+  };
+  go(2);
+  EXPECT_EQ(time_of(Stage::map), kDidNotRun);
+  static std::int64_t reading = 0;
+  pipeline_.time_stages([] { return ++reading; });
+  go(1);
+  for (const Stage stage : {Stage::motion, Stage::registration, Stage::map, Stage::voxel_grid,
+                            Stage::gradient, Stage::clusters, Stage::network, Stage::tracking}) {
+    EXPECT_EQ(time_of(stage), 1) << kStageNames[static_cast<std::size_t>(stage)];
+  }
+}
+
 TEST_F(PipelineMap, WaitsForWhatIsStillToCome) {
   EXPECT_TRUE(pipeline_.is_covered(test::nanoseconds(1))) << "no sensor, nothing to wait for";
   drive_.put_imu(pipeline_.sensors(), 0, 1);
