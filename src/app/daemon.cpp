@@ -13,16 +13,19 @@
 
 #include "clocks.hpp"
 #include "encoder_reader.hpp"
+#include "found_list.hpp"
 #include "hand_over.hpp"
 #include "health_watch.hpp"
 #include "imu_reader.hpp"
 #include "latest.hpp"
 #include "lidar_reader.hpp"
 #include "output_lines.hpp"
+#include "page_faults.hpp"
 #include "real_time.hpp"
-#include "scree/core/latency_histogram.hpp"
 #include "scree/publish/publisher.hpp"
+#include "thermometer.hpp"
 #include "turn_watch.hpp"
+#include "work_watch.hpp"
 
 namespace scree {
 namespace {
@@ -31,30 +34,8 @@ namespace {
 // Hz.
 constexpr std::size_t kSweeps = 3;
 constexpr std::size_t kLists = 4;
-constexpr std::chrono::milliseconds kLook{50};  // how often health is looked at
+constexpr std::chrono::milliseconds kLook{20};  // how often health is looked at
 constexpr std::int64_t kReport = 1'000'000'000;
-
-struct FoundList {
-  explicit FoundList(std::size_t max_obstacles) : list(max_obstacles) {}
-
-  ObstacleList list;
-  std::int64_t arrival_ns = 0;   // of the sweep's last packet, monotonic clock
-  std::int64_t detector_ns = 0;  // how long the detector worked
-  Dropped dropped;
-};
-
-void copy(const ObstacleList& from, ObstacleList& to) {
-  to.stamp_ns = from.stamp_ns;
-  to.pose = from.pose;
-  to.obstacles.resize(std::min(from.obstacles.size(), to.obstacles.capacity()));
-  std::copy_n(from.obstacles.begin(), to.obstacles.size(), to.obstacles.begin());
-}
-
-latency_t summary(const LatencyHistogram& histogram) {
-  const auto milliseconds = [](std::int64_t ns) { return static_cast<double>(ns) / 1e6; };
-  return {static_cast<std::int64_t>(histogram.count()), milliseconds(histogram.quantile_ns(0.5)),
-          milliseconds(histogram.quantile_ns(0.99)), milliseconds(histogram.max_ns())};
-}
 
 class Threads final : public Daemon {
 public:
@@ -122,7 +103,7 @@ private:
 
   void detect() {
     while (!stop_) {
-      detected_.note();
+      go_round();
       sweeps_.wait(kLook);
       // Without sweeps too, so that the sensors' rings do not fill.
       if (sensors_ != nullptr) sensors_->gather();
@@ -130,14 +111,20 @@ private:
         wait_for_motion(*sweep);
         detect(*sweep);
         sweeps_.give_back(sweep);
-        detected_.note();
+        go_round();
       }
     }
   }
 
-  void wait_for_motion(const TimedSweep& sweep) const {
+  void go_round() {
+    detected_.note();
+    last_round_ns_.store(steady_ns(), std::memory_order_relaxed);
+  }
+
+  void wait_for_motion(const TimedSweep& sweep) {
     constexpr std::chrono::milliseconds kPause{1};
     while (sensors_ != nullptr && !stop_) {
+      go_round();
       sensors_->gather();
       if (sensors_->covers(sweep.sweep.end_ns)) return;
       if (steady_ns() - sweep.arrival_ns >= wait_ns_) return;
@@ -146,19 +133,20 @@ private:
   }
 
   void detect(const TimedSweep& sweep) {
-    Dropped dropped;
+    Work work;
     const std::int64_t begin = steady_ns();
-    const ObstacleList& list = process_(sweep.sweep, dropped);
+    const ObstacleList* list = process_(sweep.sweep, work);
     const std::int64_t end = steady_ns();
+    if (list == nullptr) return;
     FoundList* found = lists_.take_free();
     if (found == nullptr) {
       lists_dropped_.fetch_add(1, std::memory_order_relaxed);
       return;
     }
-    copy(list, found->list);
+    found->take(*list);
     found->arrival_ns = sweep.arrival_ns;
     found->detector_ns = end - begin;
-    found->dropped = dropped;
+    found->work = work;
     lists_.hand_over(found);
   }
 
@@ -187,31 +175,26 @@ private:
   void publish(FoundList& found) {
     outputs_.see(found.list, steady_ns());
     found.list.stamp_ns = clock_.to_real(found.list.stamp_ns, read_clocks());
-    if (publisher_.publish(found.list)) {
-      ++health_.lists_published;
-      outputs_.beat();
-    } else {
-      ++health_.lists_failed;
-    }
-    latency_.record(steady_ns() - found.arrival_ns);
-    detector_time_.record(found.detector_ns);
-    dropped_ = found.dropped;
-    last_list_ns_ = steady_ns();
+    const bool is_taken = publisher_.publish(found.list);
+    const std::int64_t now = steady_ns(), latency_ns = now - found.arrival_ns;
+    work_.see(latency_ns, found.detector_ns, found.work);
+    ++(is_taken ? health_.lists_published : health_.lists_failed);
+    if (!is_taken) return;
+    outputs_.beat();
+    if (latency_ns <= HealthWatch::kOldSweep) last_list_ns_ = now;
   }
 
   void look(std::int64_t now) {
     outputs_.set_zone(zone_.get());
     const LidarStatus& lidar = reader_.status();
+    const DetectorStatus detector{last_round_ns_.load(std::memory_order_relaxed), last_list_ns_};
     bool has_changed =
         watch_.update(now, lidar, imu_ ? imu_->status() : ImuStatus(),
-                      encoder_ ? encoder_->status() : EncoderStatus(), last_list_ns_, health_);
+                      encoder_ ? encoder_->status() : EncoderStatus(), detector, health_);
     has_changed = drive_outputs(now) || has_changed;
     for (const auto& [is_warning, text] : watch_.log()) {
       spdlog::log(is_warning ? spdlog::level::warn : spdlog::level::info, text);
     }
-    health_.sweeps = static_cast<std::int64_t>(lidar.lidar.sweeps);
-    health_.sweeps_dropped = static_cast<std::int64_t>(lidar.sweeps_dropped);
-    fill_dropped(lidar);
     if (has_changed || now - last_report_ns_ >= kReport) report(now);
   }
 
@@ -221,16 +204,6 @@ private:
                                                           : "sees";
     const std::scoped_lock lock(status_mutex_);
     status_ = std::move(status);
-  }
-
-  void fill_dropped(const LidarStatus& lidar) {
-    const auto count = [](std::uint64_t value) { return static_cast<std::int64_t>(value); };
-    health_.points_dropped = count(lidar.lidar.dropped + dropped_.points);
-    health_.edge_points_dropped = count(dropped_.edge_points);
-    health_.obstacles_dropped = count(dropped_.obstacles);
-    health_.map_points_dropped = count(dropped_.map_points);
-    health_.tracks_dropped = count(dropped_.tracks);
-    if (sensors_ != nullptr) health_.samples_dropped = count(sensors_->dropped());
   }
 
   /// True when what health says of them changed.
@@ -247,18 +220,46 @@ private:
   void report(std::int64_t now) {
     say_status();
     health_.stamp_ns = wall_ns();
-    health_.sweeps_waiting = static_cast<std::int32_t>(sweeps_.waiting());
-    health_.lists_dropped = lists_dropped_.load(std::memory_order_relaxed);
-    health_.latency = summary(latency_);
-    health_.detector_time = summary(detector_time_);
+    fill_counts();
+    fill_computer();
     if (!publisher_.publish(health_)) spdlog::warn("LCM does not take the health message");
     last_report_ns_ = now;
+  }
+
+  void fill_counts() {
+    const auto count = [](std::uint64_t value) { return static_cast<std::int64_t>(value); };
+    const LidarStatus& lidar = reader_.status();
+    work_.fill(health_);
+    health_.sweeps = count(lidar.lidar.sweeps);
+    health_.sweeps_dropped = count(lidar.sweeps_dropped);
+    health_.sweeps_empty = count(lidar.sweeps_empty);
+    health_.points_dropped = count(lidar.lidar.dropped + work_.dropped().points);
+    health_.lists_dropped = lists_dropped_.load(std::memory_order_relaxed);
+    health_.queues = {queue_message("sweeps", sweeps_.fill()),
+                      queue_message("lists", lists_.fill())};
+    if (sensors_ != nullptr) {
+      health_.samples_dropped = count(sensors_->dropped());
+      health_.samples_refused = count(sensors_->late());
+      health_.queues.push_back(queue_message("imu", sensors_->imu_fill()));
+      health_.queues.push_back(queue_message("encoder", sensors_->wheel_fill()));
+    }
+    health_.queues_size = static_cast<std::int32_t>(health_.queues.size());
+  }
+
+  void fill_computer() {
+    health_.threads.clear();
+    for (const PageFaults& faults : page_faults()) {
+      if (!turns_.watches(faults.thread)) continue;
+      health_.threads.push_back({faults.thread, faults.minor, faults.major});
+    }
+    health_.threads_size = static_cast<std::int32_t>(health_.threads.size());
+    health_.processor_temperature = thermometer_.celsius();
   }
 
   std::atomic<bool> stop_{false};
   SweepRing sweeps_;
   HandOver<FoundList> lists_;
-  std::atomic<std::int64_t> lists_dropped_{0};
+  std::atomic<std::int64_t> lists_dropped_{0}, last_round_ns_{steady_ns()};
   LidarReader reader_;
   std::optional<ImuReader> imu_;
   std::optional<EncoderReader> encoder_;
@@ -273,9 +274,9 @@ private:
   OutputLines outputs_;
   HealthWatch watch_;
   health_t health_{};
-  LatencyHistogram latency_, detector_time_;
+  WorkWatch work_;
+  Thermometer thermometer_;
   std::int64_t last_list_ns_ = 0, last_report_ns_ = steady_ns();
-  Dropped dropped_;
 
   TurnWatch turns_;
   Turns detected_, published_;

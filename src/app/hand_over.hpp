@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "event.hpp"
+#include "scree/core/queue_depth.hpp"
 
 namespace scree {
 
@@ -18,7 +19,7 @@ class HandOver {
 public:
   /// `make` is called for each of the items.
   template <class Make>
-  HandOver(std::size_t items, Make&& make) : free_(items), full_(items) {
+  HandOver(std::size_t items, Make&& make) : free_(items), full_(items), depth_(items) {
     items_.reserve(items);
     for (std::size_t i = 0; i < items; ++i) items_.push_back(make());
     for (Item& item : items_) free_.push(&item);
@@ -32,6 +33,7 @@ public:
   }
   /// Producer: passes a filled item on and wakes the consumer.
   void hand_over(Item* item) {
+    depth_.put();
     full_.push(item);
     filled_.wake();
   }
@@ -39,7 +41,7 @@ public:
   /// Consumer: the oldest filled item, or null when none waits.
   Item* take_full() {
     Item* item = nullptr;
-    full_.pop(item);
+    if (full_.pop(item)) depth_.take();
     return item;
   }
   /// Consumer: done with the item.
@@ -50,11 +52,12 @@ public:
   /// Any thread: lets wait() return.
   void wake() { filled_.wake(); }
   /// Any thread: how many items wait for the consumer.
-  std::size_t waiting() const { return full_.read_available(); }
+  QueueFill fill() const { return depth_.fill(); }
 
 private:
   std::vector<Item> items_;
   boost::lockfree::spsc_queue<Item*> free_, full_;
+  QueueDepth depth_;
   Event filled_;
 };
 

@@ -49,25 +49,23 @@ HealthWatch::HealthWatch(const Settings& settings, std::int64_t now_ns)
                now_ns) {}
 
 bool HealthWatch::update(std::int64_t now_ns, const LidarStatus& lidar, const ImuStatus& imu,
-                         const EncoderStatus& encoder, std::int64_t last_list_ns,
+                         const EncoderStatus& encoder, const DetectorStatus& detector,
                          health_t& health) {
   log_.clear();
   const std::int8_t before = health.state;
+  const std::string reason_before = health.reason;
   say_first_packets(lidar);
   say_pulses(lidar);
   const bool has_changed = update_sensors(now_ns, lidar, imu, encoder, health);
 
-  const bool has_packets =
-      health.lidar.state == sensor_health_t::OK || health.lidar.state == sensor_health_t::SLOW;
-  const bool has_lists = last_list_ns != 0 && now_ns - last_list_ns <= kListsStop;
-  const bool sees = has_packets && has_lists;
+  health.reason = blind_reason(now_ns, lidar, health.lidar.state, detector);
+  const bool sees = health.reason.empty();
   health.state = sees ? health_t::OK : health_t::BLIND;
-  health.reason = sees ? "" : blind_reason(lidar, health.lidar.state);
   if (health.state != before)
     say(!sees, sees ? "sees: obstacle lists go out" : "blind: " + health.reason);
   sweeps_dropped_.say(now_ns, lidar.sweeps_dropped, "sweeps dropped: the detector was too slow",
                       log_);
-  return has_changed || health.state != before;
+  return has_changed || health.reason != reason_before;
 }
 
 bool HealthWatch::update_sensors(std::int64_t now_ns, const LidarStatus& lidar,
@@ -124,7 +122,9 @@ SensorStatus HealthWatch::status_of(const EncoderStatus& encoder) const {
   return status;
 }
 
-std::string HealthWatch::blind_reason(const LidarStatus& lidar, std::int8_t state) const {
+/// Empty when the robot sees.
+std::string HealthWatch::blind_reason(std::int64_t now_ns, const LidarStatus& lidar,
+                                      std::int8_t state, const DetectorStatus& detector) const {
   switch (state) {
     case sensor_health_t::NEVER_SEEN:
       return lidar.data_port.foreign == 0 ? fmt::format("nothing has come on {}", port_)
@@ -138,9 +138,14 @@ std::string HealthWatch::blind_reason(const LidarStatus& lidar, std::int8_t stat
     default:
       break;
   }
-  if (lidar.is_last_sweep_empty) return "the lidar's last turn has no return: is it covered?";
-  if (lidar.lidar.sweeps == 0) return "the lidar has not made a whole turn yet";
-  return "packets come, but no sweep has got through the detector";
+  if (lidar.without_return_ns > kReturnsStop) return "the lidar has no return: is it covered?";
+  if (lidar.last_sweep_ns == 0) return "the lidar has not made a whole turn yet";
+  if (lidar.last_packet_ns - lidar.last_sweep_ns > kTurnStops)
+    return "the lidar makes no whole turns: does it turn?";
+  if (now_ns - detector.last_round_ns > kDetectorStops) return "the detector is late";
+  if (detector.last_list_ns == 0) return "no sweep has got through the detector yet";
+  if (now_ns - detector.last_list_ns > kListsStop) return "sweeps come, but no lists go out";
+  return "";
 }
 
 void HealthWatch::say_first_packets(const LidarStatus& lidar) {

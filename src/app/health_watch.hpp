@@ -11,21 +11,37 @@
 
 namespace scree {
 
+/// What became of the sweeps that were handed to the detector. Times are of the steady clock, 0
+/// before the first.
+struct DetectorStatus {
+  std::int64_t last_round_ns = 0;  ///< its thread waited, or began or ended with a sweep
+  std::int64_t last_list_ns = 0;   ///< LCM took a list, of a sweep not older than kOldSweep
+};
+
 /// Judges from what the threads report whether the robot sees, and what a person should read in the
-/// log. Knows no clock: `now_ns` is the steady clock's. The robot is blind unless packets of the
-/// lidar come and are understood and a list came within kListsStop; without IMU and encoder it sees
-/// less well, and is not blind.
+/// log. Knows no clock: `now_ns` is the steady clock's.
+///
+/// The robot is blind unless packets of the lidar come and are understood (SensorWatch::kSilence)
+/// and have returns (kReturnsStop), they make whole turns (kTurnStops), the detector is not late
+/// (kDetectorStops) and lists go out (kListsStop). Whatever stops is said within 300 ms when this
+/// is asked every 20 ms. Without IMU and encoder the robot sees less well, and is not blind.
 class HealthWatch {
 public:
-  // A VLP-16 turns at least 5 times a second.
-  static constexpr std::int64_t kListsStop = 500'000'000;
+  // A VLP-16 turns at least 5 times a second, and the detector has to keep up with that.
+  static constexpr std::int64_t kReturnsStop = 200'000'000;
+  static constexpr std::int64_t kTurnStops = 250'000'000;
+  static constexpr std::int64_t kDetectorStops = 250'000'000;
+  // The longest turn, and all that a latency can change meanwhile: with all else in order.
+  static constexpr std::int64_t kListsStop = 400'000'000;
+  // What is found in a sweep that old, as after a pause of the whole computer, is no sight.
+  static constexpr std::int64_t kOldSweep = 1'000'000'000;
 
   HealthWatch(const Settings& settings, std::int64_t now_ns);
 
-  /// Brings `health` up to date: its state and reason, and what concerns the sensors. True when the
-  /// state of the robot, of a sensor or of the encoder's bus changed.
+  /// Brings `health` up to date: its state and reason, and what concerns the sensors. True when one
+  /// of these changed: the reason, the state of a sensor, of its clock or of the encoder's bus.
   bool update(std::int64_t now_ns, const LidarStatus& lidar, const ImuStatus& imu,
-              const EncoderStatus& encoder, std::int64_t last_list_ns, health_t& health);
+              const EncoderStatus& encoder, const DetectorStatus& detector, health_t& health);
   /// What the last update found worth a line in the log.
   const LogLines& log() const { return log_; }
 
@@ -35,7 +51,8 @@ private:
   SensorStatus status_of(const EncoderStatus& encoder) const;
   bool update_sensors(std::int64_t now_ns, const LidarStatus& lidar, const ImuStatus& imu,
                       const EncoderStatus& encoder, health_t& health);
-  std::string blind_reason(const LidarStatus& lidar, std::int8_t state) const;
+  std::string blind_reason(std::int64_t now_ns, const LidarStatus& lidar, std::int8_t state,
+                           const DetectorStatus& detector) const;
   void say(bool is_warning, std::string text) { log_.push_back({is_warning, std::move(text)}); }
   void say_first_packets(const LidarStatus& lidar);
   void say_pulses(const LidarStatus& lidar);

@@ -67,6 +67,7 @@ void LidarReader::read_data() {
   }
   status_.lidar = stream_.counters();
   status_.firmware = stream_.firmware();
+  status_.without_return_ns = stream_.without_return_ns();
   if (status_.lidar.accepted != accepted) status_.last_packet_ns = steady_ns();
 }
 
@@ -86,9 +87,12 @@ void LidarReader::read_pulses() {
 }
 
 void LidarReader::hand_over(Sweep& sweep) {
+  if (sweep.is_whole) status_.last_sweep_ns = steady_ns();
   // Nothing seen is not the same as nothing there: a covered sensor must not give empty lists.
-  status_.is_last_sweep_empty = sweep.points.empty();
-  if (sweep.points.empty()) return;
+  if (sweep.points.empty()) {
+    ++status_.sweeps_empty;
+    return;
+  }
   TimedSweep* item = sweeps_.take_free();
   if (item == nullptr) {
     ++status_.sweeps_dropped;

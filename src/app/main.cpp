@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "clocks.hpp"
 #include "latest.hpp"
 #include "log_format.hpp"
 #include "real_time.hpp"
@@ -28,18 +29,18 @@ int failed(const std::string& reason) {
 scree::Process process_of(scree::Pipeline& pipeline,
                           scree::Latest<scree::TrackingSettings>& tracking) {
   return [&pipeline, &tracking, all = scree::Dropped()](
-             const scree::Sweep& sweep,
-             scree::Dropped& dropped) mutable -> const scree::ObstacleList& {
+             const scree::Sweep& sweep, scree::Work& work) mutable -> const scree::ObstacleList* {
     pipeline.set_tracking(tracking.get());
     const scree::ObstacleList& list = pipeline.process(sweep);
     const scree::StageCounts counts = pipeline.counts();
     all.points += counts.dropped;
+    all.points_refused += counts.refused;
     all.edge_points += counts.edges_dropped;
     all.obstacles += counts.obstacles_dropped;
     all.map_points = pipeline.mapper().map().dropped();
     all.tracks = pipeline.tracker().dropped();
-    dropped = all;
-    return list;
+    work = {all, pipeline.stage_times()};
+    return pipeline.has_looked() ? &list : nullptr;
   };
 }
 
@@ -76,6 +77,8 @@ int run(const std::filesystem::path& file) {
   if (!lines) return failed(lines.error().message);
   auto pipeline = scree::Pipeline::make(settings, file.parent_path());
   if (!pipeline) return failed(pipeline.error().message);
+
+  pipeline->time_stages(scree::steady_ns);
 
   scree::Latest<scree::TrackingSettings> tracking;
   tracking.put(settings.track);

@@ -28,8 +28,10 @@ struct LidarStatus {
   bool is_pps_lost = false;  ///< its GPIO chip is gone
   ClockStatus clock;
 
+  std::int64_t without_return_ns = 0;
+  std::int64_t last_sweep_ns = 0;    ///< when a whole turn was complete
   std::uint64_t sweeps_dropped = 0;  ///< the ring to the detector was full
-  bool is_last_sweep_empty = false;
+  std::uint64_t sweeps_empty = 0;    ///< without a return
 };
 
 struct ImuStatus {

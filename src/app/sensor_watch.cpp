@@ -51,9 +51,9 @@ SensorWatch::SensorWatch(Terms terms, std::int64_t now_ns)
 
 bool SensorWatch::update(std::int64_t now_ns, const SensorStatus& status, sensor_health_t& health,
                          LogLines& log) {
+  const std::int8_t before = health.state, clock_before = health.clock;
   fill(status, health);
   measure(now_ns, status, health);
-  const std::int8_t before = health.state;
   const bool is_slow = judged_ == sensor_health_t::OK && is_slow_;
   health.state = is_slow ? sensor_health_t::SLOW : judged_;
 
@@ -71,7 +71,7 @@ bool SensorWatch::update(std::int64_t now_ns, const SensorStatus& status, sensor
   kernel_drops_.say(
       now_ns, status.kernel_drops,
       fmt::format("{} dropped by the kernel: the reader was too slow", terms_.messages), log);
-  return health.state != before;
+  return health.state != before || health.clock != clock_before;
 }
 
 std::int8_t SensorWatch::judge(std::int64_t now_ns, const SensorStatus& status) {

@@ -43,7 +43,7 @@ struct SensorStatus {
 /// | OK         | else                                                               |
 class SensorWatch {
 public:
-  // The daemon looks every 50 ms, so that silence is published within 300 ms. A VLP-16 sends a
+  // The daemon looks every 20 ms, so that silence is published within 300 ms. A VLP-16 sends a
   // packet every 1.3 ms, an MTi a message every 10 ms, an encoder a frame every 100 ms at least.
   static constexpr std::int64_t kSilence = 200'000'000;
 
@@ -55,7 +55,7 @@ public:
 
   SensorWatch(Terms terms, std::int64_t now_ns);
 
-  /// Brings `health` up to date and adds to `log`. True when the state changed.
+  /// Brings `health` up to date and adds to `log`. True when the state changed, or the clock's.
   bool update(std::int64_t now_ns, const SensorStatus& status, sensor_health_t& health,
               LogLines& log);
 

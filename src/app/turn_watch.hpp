@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string_view>
 #include <vector>
@@ -14,6 +15,10 @@ public:
   /// Keeps references to both.
   void add(std::string_view thread, const Turns& turns) {
     watched_.push_back({thread, &turns, turns.count()});
+  }
+
+  bool watches(std::string_view thread) const {
+    return std::ranges::any_of(watched_, [&](const Watched& one) { return one.thread == thread; });
   }
 
   /// The first thread that has not gone round since this last found that all had; empty when all

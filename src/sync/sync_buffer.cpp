@@ -46,24 +46,37 @@ Eigen::Vector3d mean_rate(const ImuSample& before, const ImuSample& after) {
 
 }  // namespace
 
+template <class Sample>
+bool SyncBuffer::put(const Sample& sample, Ring<Sample>& ring) {
+  if (ring.samples.write_available() == 0) {
+    dropped_.fetch_add(1, std::memory_order_relaxed);
+    return false;
+  }
+  ring.depth.put();
+  return ring.samples.push(sample);
+}
+
 bool SyncBuffer::put(const ImuSample& sample) {
-  if (imu_ring_.push(sample)) return true;
-  dropped_.fetch_add(1, std::memory_order_relaxed);
-  return false;
+  return put(sample, imu_ring_);
 }
 
 bool SyncBuffer::put(const EncoderSample& sample) {
-  if (wheel_ring_.push(sample)) return true;
-  dropped_.fetch_add(1, std::memory_order_relaxed);
-  return false;
+  return put(sample, wheel_ring_);
+}
+
+/// Into the history; how many of them it refused.
+template <class Sample>
+std::uint64_t SyncBuffer::empty(Ring<Sample>& ring, SampleHistory<Sample>& history) {
+  std::uint64_t refused = 0;
+  ring.samples.consume_all([&](const Sample& sample) {
+    ring.depth.take();
+    refused += take(history, sample) ? 0 : 1;
+  });
+  return refused;
 }
 
 void SyncBuffer::gather() {
-  std::uint64_t late = 0;
-  imu_ring_.consume_all([&](const ImuSample& sample) { late += take(imu_, sample) ? 0 : 1; });
-  wheel_ring_.consume_all(
-      [&](const EncoderSample& sample) { late += take(wheel_, sample) ? 0 : 1; });
-  late_.fetch_add(late, std::memory_order_relaxed);
+  late_.fetch_add(empty(imu_ring_, imu_) + empty(wheel_ring_, wheel_), std::memory_order_relaxed);
 }
 
 bool SyncBuffer::covers(std::int64_t t_ns) const {

@@ -144,5 +144,6 @@ class Player:
                 if self.stopped.is_set():
                     return
                 send()
+                self.last_sent = time.monotonic()
             if not self.loop:
                 return

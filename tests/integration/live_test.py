@@ -7,6 +7,7 @@ import sys
 import threading
 import time
 
+from hung_thread import hung
 from live_sensors import EmulatedMti, Player, can_socket
 from programs import PATIENCE, ProgramTest, main
 
@@ -60,15 +61,15 @@ class LiveTest(ProgramTest):
 
     def start_all(self, can=None):
         capture = self.simulate()
-        daemon = self.start(SCREED, "--config", self.config)
-        self.log = Lines(daemon.stderr)
+        self.daemon = self.start(SCREED, "--config", self.config)
+        self.log = Lines(self.daemon.stderr)
         self.log.first(lambda line: "publishing on" in line)
         watch = [SCREE, "watch", "--url", self.url]
         self.health = Lines(self.start(*watch).stdout)
         self.lists = Lines(self.start(*watch, "--json").stdout)
         self.mti.plug_in()
-        player = Player(capture, self.port, self.position_port, self.mti, can, loop=True)
-        self.addCleanup(player.stop)
+        self.player = Player(capture, self.port, self.position_port, self.mti, can, loop=True)
+        self.addCleanup(self.player.stop)
 
     def say(self, words, since=0):
         """Where health first says so."""
@@ -101,6 +102,35 @@ class LiveTest(ProgramTest):
         self.say("imu ok", at)
         self.log.first(lambda line: "messages from the IMU" in line and "again after" in line)
         self.lists_go_on()
+
+    def blind_is_said(self, cause, since, start):
+        """And the stop line with it."""
+        line = self.health.lines[self.say("health BLIND", since)]
+        print(f"BLIND was said {time.monotonic() - start:.3f} s after {cause}")
+        self.assertIn(", stop: ", line)
+
+    def test_blind_is_said_when_packets_or_lists_stop(self):
+        self.start_all()
+        self.say("health ok")
+        self.lists_go_on()
+        self.assertIn("slowest", self.health.lines[self.say("detector p50")])
+
+        at = len(self.health.lines)
+        try:
+            with hung(self.daemon.pid, "detector"):
+                self.blind_is_said("the detector hung", at, time.monotonic())
+                self.say("the detector is late", at)
+        except PermissionError as error:
+            self.skipTest(f"no thread can be stopped here: {error}")
+        self.say("health ok", len(self.health.lines))
+
+        at = len(self.health.lines)
+        self.player.stop()
+        self.blind_is_said("the last packet", at, self.player.last_sent)
+        self.say("no packets on", at)
+        lists = len(self.lists.lines)
+        self.say("health BLIND", len(self.health.lines))
+        self.assertEqual(len(self.lists.lines), lists)
 
     def test_the_encoder_is_heard(self):
         can, reason = can_socket("vcan0")

@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <iterator>
@@ -61,15 +62,39 @@ void append_sensor(const char* name, const sensor_health_t& sensor, const std::s
 void append_dropped(const health_t& health, std::string& text) {
   Counts counts;
   counts.add("sweeps dropped", health.sweeps_dropped);
+  counts.add("sweeps without a return", health.sweeps_empty);
   counts.add("lists failed", health.lists_failed);
   counts.add("lists dropped", health.lists_dropped);
   counts.add("points dropped", health.points_dropped);
+  counts.add("points refused", health.points_refused);
   counts.add("edge points dropped", health.edge_points_dropped);
   counts.add("obstacles dropped", health.obstacles_dropped);
   counts.add("map points dropped", health.map_points_dropped);
   counts.add("tracks dropped", health.tracks_dropped);
   counts.add("samples dropped", health.samples_dropped);
+  counts.add("samples refused", health.samples_refused);
   if (!counts.text().empty()) text += "              " + counts.text() + '\n';
+}
+
+/// How long the detector takes, how full the queues have been, page faults, temperature.
+void append_work(const health_t& health, std::string& text) {
+  if (health.stages.empty()) return;
+  const auto slowest = std::ranges::max_element(
+      health.stages, {}, [](const stage_t& stage) { return stage.time.p99_ms; });
+  text += fmt::format(
+      "              detector p50 {:.1f} p99 {:.1f} max {:.1f} ms, slowest {} p99 {:.1f} ms",
+      health.detector_time.p50_ms, health.detector_time.p99_ms, health.detector_time.max_ms,
+      slowest->name, slowest->time.p99_ms);
+  for (const queue_t& queue : health.queues) {
+    text += fmt::format(", {} queue up to {} of {}", queue.name, queue.most, queue.capacity);
+  }
+  std::int64_t faults = 0;
+  for (const thread_t& thread : health.threads) faults += thread.minor_faults + thread.major_faults;
+  text += fmt::format(", {} page faults", faults);
+  if (!std::isnan(health.processor_temperature)) {
+    text += fmt::format(", processor {:.0f} C", health.processor_temperature);
+  }
+  text += '\n';
 }
 
 }  // namespace
@@ -100,6 +125,7 @@ void append_text(const health_t& health, std::string& text) {
   append_sensor("imu", health.imu, "", text);
   append_sensor("encoder", health.encoder, ", bus " + health.encoder_bus, text);
   if (!health.lines_problem.empty()) text += "              " + health.lines_problem + '\n';
+  append_work(health, text);
   append_dropped(health, text);
 }
 

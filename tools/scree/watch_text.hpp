@@ -9,8 +9,8 @@ namespace scree::cli {
 
 /// Appends a list for people: a line with its time and one line for each obstacle.
 void append_text(const ObstacleList& list, std::string& text);
-/// Appends health for people: one line, one for each sensor, and one more where things were
-/// dropped.
+/// Appends health for people: one line, one for each sensor, one of the detector's work once there
+/// is any, and one more where things were dropped.
 void append_text(const health_t& health, std::string& text);
 
 }  // namespace scree::cli

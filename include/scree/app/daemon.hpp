@@ -10,6 +10,7 @@
 #include "scree/config/settings.hpp"
 #include "scree/core/obstacle.hpp"
 #include "scree/core/result.hpp"
+#include "scree/core/stage_times.hpp"
 #include "scree/core/sweep.hpp"
 #include "scree/sync/sync_buffer.hpp"
 
@@ -19,10 +20,18 @@ namespace scree {
 struct Dropped {
   std::uint64_t points = 0, edge_points = 0, obstacles = 0;  ///< detector
   std::uint64_t map_points = 0, tracks = 0;
+  std::uint64_t points_refused = 0;  ///< by the detector: no numbers, or too far off
 };
 
-/// The detector's work on one sweep: the list is valid until the next call. Called from one thread.
-using Process = std::function<const ObstacleList&(const Sweep& sweep, Dropped& dropped)>;
+/// What the detector reports of its work on one sweep.
+struct Work {
+  Dropped dropped;
+  StageTimes stage_times{};
+};
+
+/// The detector's work on one sweep: the list is valid until the next call, and null when the sweep
+/// was not looked at, so that nothing is known of what is there. Called from one thread.
+using Process = std::function<const ObstacleList*(const Sweep& sweep, Work& work)>;
 
 /// The robot's daemon: one thread reads each sensor, one detects, one publishes lists and health
 /// and writes the log. Between them lie bounded rings; where one is full the newest is dropped and

@@ -7,6 +7,7 @@
 
 #include "scree/core/encoder_sample.hpp"
 #include "scree/core/imu_sample.hpp"
+#include "scree/core/queue_depth.hpp"
 #include "scree/sync/sample_history.hpp"
 
 namespace scree {
@@ -60,13 +61,24 @@ public:
   /// Samples that found no room, and samples that gather() refused. Any thread.
   std::uint64_t dropped() const { return dropped_.load(std::memory_order_relaxed); }
   std::uint64_t late() const { return late_.load(std::memory_order_relaxed); }
+  /// How full the rings are that the producers fill and gather() empties. Any thread.
+  QueueFill imu_fill() const { return imu_ring_.depth.fill(); }
+  QueueFill wheel_fill() const { return wheel_ring_.depth.fill(); }
 
 private:
   static constexpr std::size_t kRing = 4096;  // over 4 s at 1 kHz
   static constexpr std::size_t kHistory = 4096;
 
   template <class Sample>
-  using Ring = boost::lockfree::spsc_queue<Sample, boost::lockfree::capacity<kRing>>;
+  struct Ring {
+    boost::lockfree::spsc_queue<Sample, boost::lockfree::capacity<kRing>> samples;
+    QueueDepth depth{kRing};
+  };
+
+  template <class Sample>
+  bool put(const Sample& sample, Ring<Sample>& ring);
+  template <class Sample>
+  static std::uint64_t empty(Ring<Sample>& ring, SampleHistory<Sample>& history);
 
   Ring<ImuSample> imu_ring_;
   Ring<EncoderSample> wheel_ring_;

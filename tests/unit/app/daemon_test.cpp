@@ -22,6 +22,15 @@ std::int64_t nanoseconds_of() {
   return std::chrono::nanoseconds(AClock::now().time_since_epoch()).count();
 }
 
+using Names = std::vector<std::string>;
+
+template <class Named>
+Names names_of(const std::vector<Named>& all) {
+  Names names;
+  for (const Named& one : all) names.push_back(one.name);
+  return names;
+}
+
 /// What comes on LCM.
 class Listener {
 public:
@@ -68,7 +77,7 @@ protected:
     listener_.emplace(settings_.lcm.url);
   }
   /// Stands for the detector: an obstacle in each sweep.
-  const ObstacleList& process(const Sweep& sweep, Dropped& dropped) {
+  const ObstacleList* process(const Sweep& sweep, Work& work) {
     while (is_stuck_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     found_.stamp_ns = sweep.end_ns;
     sweep_age_ns_ = nanoseconds_of<Clock>() - sweep.end_ns;
@@ -77,23 +86,22 @@ protected:
     rock.center.x() = rock_x_;
     rock.points = static_cast<std::uint32_t>(sweep.points.size());
     found_.obstacles.push_back(rock);
-    dropped = {1, 2, 3, 4, 5};
-    return found_;
+    work.dropped = {1, 2, 3, 4, 5, 6};
+    work.stage_times.fill(kDidNotRun);
+    work.stage_times[static_cast<std::size_t>(Stage::gradient)] = 7'000'000;
+    return looks_ ? &found_ : nullptr;
   }
   std::unique_ptr<Daemon> start() {
     auto daemon = Daemon::start(
-        settings_,
-        [this](const Sweep& sweep, Dropped& dropped) -> const ObstacleList& {
-          return process(sweep, dropped);
-        },
-        nullptr, lines_);
+        settings_, [this](const Sweep& sweep, Work& work) { return process(sweep, work); }, nullptr,
+        lines_);
     EXPECT_TRUE(daemon) << daemon.error().message;
     return std::move(*daemon);
   }
 
   Settings settings_;
   std::optional<Listener> listener_;
-  std::atomic<bool> is_stuck_ = false;
+  std::atomic<bool> is_stuck_ = false, looks_ = true;
   std::atomic<std::int64_t> sweep_age_ns_ = 0;
   std::atomic<double> rock_x_ = 100;
   RobotLines lines_;
@@ -128,6 +136,12 @@ TEST_F(DaemonTest, ListsAndHealthComeAndBlindnessIsSaid) {
     EXPECT_EQ(listener_->health.obstacles_dropped, 3);
     EXPECT_EQ(listener_->health.map_points_dropped, 4);
     EXPECT_EQ(listener_->health.tracks_dropped, 5);
+    EXPECT_EQ(listener_->health.points_refused, 6);
+    ASSERT_EQ(listener_->health.stages_size, 1);
+    EXPECT_EQ(listener_->health.stages[0].name, "gradient");
+    EXPECT_EQ(listener_->health.stages[0].time.max_ms, 7);
+    EXPECT_EQ(names_of(listener_->health.queues), (Names{"sweeps", "lists"}));
+    EXPECT_EQ(names_of(listener_->health.threads), (Names{"lidar", "detector", "publisher"}));
   }
   ASSERT_TRUE(
       listener_->until([&] { return listener_->health.lidar.state == sensor_health_t::SILENT; }));
@@ -145,9 +159,23 @@ TEST_F(DaemonTest, ASlowDetectorLosesTheNewestSweepsAndTheyAreCounted) {
   EXPECT_TRUE(listener_->until([&] { return listener_->health.sweeps_dropped > 0; }));
   EXPECT_EQ(listener_->lists, 0);
   EXPECT_EQ(listener_->health.state, health_t::BLIND);
-  EXPECT_EQ(listener_->health.sweeps_waiting, 2);
+  EXPECT_THAT(listener_->health.reason, HasSubstr("detector"));
+  EXPECT_EQ(listener_->health.queues[0].waiting, 2);
+  EXPECT_EQ(listener_->health.queues[0].capacity, 3);
   is_stuck_ = false;
   EXPECT_TRUE(listener_->until([&] { return listener_->health.state == health_t::OK; }));
+}
+
+TEST_F(DaemonTest, NothingIsPublishedWhileNothingIsLookedAt) {
+  looks_ = false;
+  const auto daemon = start();
+  const SendingLidar lidar(settings_.lidar.port);
+  ASSERT_TRUE(listener_->until([&] { return listener_->health.sweeps > 5; }));
+  EXPECT_EQ(listener_->lists, 0);
+  EXPECT_EQ(listener_->health.state, health_t::BLIND);
+  looks_ = true;
+  EXPECT_TRUE(listener_->until([&] { return listener_->health.state == health_t::OK; }));
+  EXPECT_GT(listener_->lists, 0);
 }
 
 TEST_F(DaemonTest, TheLinesFollowWhatIsSeen) {

@@ -29,7 +29,7 @@ TEST(HandOver, WhenFullNothingIsFreeUntilOneIsGivenBack) {
     ring.hand_over(item);
   }
   EXPECT_EQ(ring.take_free(), nullptr);
-  EXPECT_EQ(ring.waiting(), 2U);
+  EXPECT_EQ(ring.fill().waiting, 2U);
   Item* oldest = ring.take_full();
   ASSERT_NE(oldest, nullptr);
   EXPECT_EQ(oldest->number, 1U);
@@ -38,6 +38,9 @@ TEST(HandOver, WhenFullNothingIsFreeUntilOneIsGivenBack) {
   EXPECT_EQ(ring.take_free(), oldest);
   EXPECT_EQ(ring.take_full()->number, 2U);
   EXPECT_EQ(ring.take_full(), nullptr);
+  EXPECT_EQ(ring.fill().waiting, 0U);
+  EXPECT_EQ(ring.fill().most, 2U);
+  EXPECT_EQ(ring.fill().capacity, 2U);
 }
 
 TEST(HandOver, AWakeUpBeforeTheWaitIsNotLost) {
@@ -58,6 +61,15 @@ TEST(HandOver, EverythingHandedOverArrivesOnceAndInOrder) {
       }
       (*item)->number = i++;
       ring.hand_over(item);
+    }
+  });
+  // A third thread, as the one that publishes health.
+  std::jthread watcher([&](const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+      const QueueFill fill = ring.fill();
+      EXPECT_LE(fill.waiting, 3U);
+      EXPECT_LE(fill.most, 3U);
+      std::this_thread::yield();
     }
   });
   for (std::uint64_t expected = 1; expected <= kItems;) {

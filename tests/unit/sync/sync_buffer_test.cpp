@@ -187,6 +187,22 @@ TEST_F(SyncBufferTest, DropsAndCountsWhatFindsNoRoomAndKeepsTheNewestOfTheRest) 
   EXPECT_LE(buffer_->wheel().size(), kept) << "history is bounded";
 }
 
+TEST_F(SyncBufferTest, SaysHowFullItsRingsAreAndWere) {
+  for (int i = 0; i < 3; ++i) put(i * kMillisecond);
+  buffer_->put(rolled(3 * kMillisecond, 1));
+  EXPECT_EQ(buffer_->imu_fill().waiting, 3U);
+  EXPECT_EQ(buffer_->wheel_fill().waiting, 4U);
+  buffer_->gather();
+  put(9 * kMillisecond);
+  EXPECT_EQ(buffer_->imu_fill().waiting, 1U);
+  EXPECT_EQ(buffer_->imu_fill().most, 3U);
+  EXPECT_EQ(buffer_->wheel_fill().most, 4U);
+  for (std::int64_t t = 10; buffer_->put(rolled(t * kMillisecond, 1)); ++t) {
+  }
+  EXPECT_EQ(buffer_->wheel_fill().waiting, buffer_->wheel_fill().capacity);
+  EXPECT_EQ(buffer_->wheel_fill().most, buffer_->wheel_fill().capacity);
+}
+
 TEST_F(SyncBufferTest, AllocatesNothing) {
   const std::size_t before = test::allocations();
   for (std::int64_t second = 0; second < 60; ++second) {

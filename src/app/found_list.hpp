@@ -1,0 +1,30 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include "scree/app/daemon.hpp"
+#include "scree/core/obstacle.hpp"
+
+namespace scree {
+
+/// A list on its way from the detector to the publisher.
+struct FoundList {
+  explicit FoundList(std::size_t max_obstacles) : list(max_obstacles) {}
+
+  /// Copies a list, as far as there is room; allocates nothing.
+  void take(const ObstacleList& from) {
+    list.stamp_ns = from.stamp_ns;
+    list.pose = from.pose;
+    list.obstacles.resize(std::min(from.obstacles.size(), list.obstacles.capacity()));
+    std::copy_n(from.obstacles.begin(), list.obstacles.size(), list.obstacles.begin());
+  }
+
+  ObstacleList list;
+  std::int64_t arrival_ns = 0;   ///< of the sweep's last packet, monotonic clock
+  std::int64_t detector_ns = 0;  ///< how long the detector worked
+  Work work;
+};
+
+}  // namespace scree

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+namespace scree {
+
+/// Reads the temperature of the processor where the kernel says it: in a thermal zone (Raspberry
+/// Pi, Jetson, Intel) or a hardware monitor (AMD, Intel) under /sys/class.
+class Thermometer {
+public:
+  explicit Thermometer(const std::filesystem::path& classes = "/sys/class");
+
+  /// Of the hottest of its sensors, degrees Celsius; not a number where there is none.
+  double celsius() const;
+
+private:
+  std::vector<std::filesystem::path> sensors_;  // each holds thousandths of a degree
+};
+
+}  // namespace scree

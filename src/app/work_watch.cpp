@@ -1,0 +1,47 @@
+#include "work_watch.hpp"
+
+#include <utility>
+
+namespace scree {
+namespace {
+
+latency_t summary(const LatencyHistogram& histogram) {
+  const auto milliseconds = [](std::int64_t ns) { return static_cast<double>(ns) / 1e6; };
+  return {static_cast<std::int64_t>(histogram.count()), milliseconds(histogram.quantile_ns(0.5)),
+          milliseconds(histogram.quantile_ns(0.99)), milliseconds(histogram.max_ns())};
+}
+
+}  // namespace
+
+void WorkWatch::see(std::int64_t latency_ns, std::int64_t detector_ns, const Work& work) {
+  latency_.record(latency_ns);
+  detector_.record(detector_ns);
+  for (std::size_t i = 0; i < stages_.size(); ++i) {
+    if (work.stage_times[i] != kDidNotRun) stages_[i].record(work.stage_times[i]);
+  }
+  dropped_ = work.dropped;
+}
+
+void WorkWatch::fill(health_t& health) const {
+  health.latency = summary(latency_);
+  health.detector_time = summary(detector_);
+  health.stages.clear();
+  for (std::size_t i = 0; i < stages_.size(); ++i) {
+    if (stages_[i].count() == 0) continue;
+    health.stages.push_back({std::string(kStageNames[i]), summary(stages_[i])});
+  }
+  health.stages_size = static_cast<std::int32_t>(health.stages.size());
+  const auto count = [](std::uint64_t value) { return static_cast<std::int64_t>(value); };
+  health.points_refused = count(dropped_.points_refused);
+  health.edge_points_dropped = count(dropped_.edge_points);
+  health.obstacles_dropped = count(dropped_.obstacles);
+  health.map_points_dropped = count(dropped_.map_points);
+  health.tracks_dropped = count(dropped_.tracks);
+}
+
+queue_t queue_message(std::string name, const QueueFill& fill) {
+  const auto count = [](std::size_t value) { return static_cast<std::int32_t>(value); };
+  return {std::move(name), count(fill.waiting), count(fill.most), count(fill.capacity)};
+}
+
+}  // namespace scree
