@@ -26,7 +26,9 @@ bool SweepBuilder::passes_cut(float azimuth, std::int64_t shot_ns) {
   if (!open_) return false;
   if (shot_ns - begin_ns_ > kLongestSweepNs) return true;
   if (behind_cut_ > before - kStepBack) return false;
-  if (was_cut_ && shot_ns - last_cut_ns_ < kShortestTurnNs) return false;
+  // After a restart of the sensor the last cut lies ahead.
+  const std::int64_t since_cut_ns = shot_ns - last_cut_ns_;
+  if (was_cut_ && since_cut_ns >= 0 && since_cut_ns < kShortestTurnNs) return false;
   was_cut_ = ends_at_cut_ = true;
   last_cut_ns_ = shot_ns;
   return true;

@@ -243,6 +243,12 @@ TEST(LidarStream, ARestartBeginsANewSweep) {
   EXPECT_EQ(sensor.counters().device_restarts, 1U);
   EXPECT_EQ(sensor.counters().lost, 0U);
   EXPECT_GT(sensor.seen.size(), before);
+  sensor.send_for(0.8);
+  ASSERT_GE(sensor.seen.size(), before + 11);
+  for (std::size_t i = sensor.seen.size() - 8; i < sensor.seen.size(); ++i) {
+    EXPECT_TRUE(sensor.seen[i].is_whole);
+    EXPECT_NEAR(static_cast<double>(sensor.seen[i].end_ns - sensor.seen[i].begin_ns), 1e8, 2e5);
+  }
 }
 
 TEST(LidarStream, AShortCapturePlayedInALoopKeepsItsSweeps) {
