@@ -66,7 +66,7 @@ class PackageTest(ProgramTest):
         overview = self.done(f"{root}/usr/bin/scree", "--help")
         subcommands = re.findall(r"^  ([a-z]+) {2,}", overview.partition("Subcommands:")[2], re.M)
         self.assertIn("detect", subcommands)
-        for name in ["screed", "scree", *(f"scree-{command}" for command in subcommands)]:
+        for name in ["screed", "scree", "scree-spy", *(f"scree-{command}" for command in subcommands)]:
             page = self.done("zcat", f"{root}/usr/share/man/man1/{name}.1.gz")
             self.assertRegex(page, rf"\.SH NAME\n{name} \\- \w", name)
             self.assertIn(".SH OPTIONS", page, name)
@@ -83,6 +83,8 @@ class PackageTest(ProgramTest):
         self.done(sys.executable, "-c", code, env={"PYTHONPATH": modules})
         with zipfile.ZipFile(f"{root}/usr/share/java/scree.jar") as jar:
             classes = {os.path.basename(name) for name in jar.namelist() if name.endswith(".class")}
+        with zipfile.ZipFile(f"{root}/usr/share/java/scree-spy.jar") as jar:
+            self.assertIn("scree/spy/ObstacleView.class", jar.namelist())
         types = os.listdir(f"{root}/usr/share/scree/lcm")
         self.assertEqual(classes, {name.replace(".lcm", ".class") for name in types})
         headers = os.listdir(f"{root}/usr/include/scree")
@@ -110,6 +112,7 @@ class PackageTest(ProgramTest):
         self.assertEqual(self.complete(root, "scree detect "), [], "bash offers files")
         self.assertEqual(self.complete(root, "scree record --config "), [], "bash offers files")
         self.assertEqual(self.complete(root, "screed --ch"), ["--check-config"])
+        self.assertEqual(self.complete(root, "scree-spy --u"), ["--url"])
 
 
 if __name__ == "__main__":

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Writes bash's completion of scree and screed from what they say to --help.
+"""Writes bash's completion of scree, screed and scree-spy from what they say to --help.
 
-completion.py SCREE SCREED > FILE
+completion.py SCREE SCREED SCREE_SPY > FILE
 """
 
+import os
 import re
 import subprocess
 import sys
@@ -58,25 +59,27 @@ def cases(command, text):
 
 
 def main():
-    scree, screed = sys.argv[1:]
+    scree, *others = sys.argv[1:]
     overview = help_of(scree)
     subcommands = [name for name, _ in entries(overview, "Subcommands")]
     branches = [case for name in subcommands for case in cases(f"scree {name}", help_of(scree, name))]
+    for other in others:
+        branches += cases(os.path.basename(other), help_of(other))
     first = branch('"scree "*', described(overview)[0], subcommands)
-    print("# Made from what scree and screed say to --help. Where no word fits, bash offers files.")
+    print("# Made from what the programs say to --help. Where no word fits, bash offers files.")
     print("_scree() {")
     print('  local current=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]} options words')
     print("  local command=${COMP_WORDS[0]##*/}")
     print("  COMPREPLY=()")
     print('  [[ $command == scree ]] && ((COMP_CWORD > 1)) && command+=" ${COMP_WORDS[1]}"')
     print('  case "$command $before" in')
-    print("\n".join([*branches, *cases("screed", help_of(screed))]))
+    print("\n".join(branches))
     print(first)
     print("  esac")
     print("  [[ $current == -* ]] && words=$options")
     print('  mapfile -t COMPREPLY < <(compgen -W "$words" -- "$current")')
     print("}")
-    print("complete -o default -F _scree scree screed")
+    print("complete -o default -F _scree", "scree", *map(os.path.basename, others))
 
 
 main()
