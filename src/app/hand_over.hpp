@@ -41,17 +41,20 @@ public:
   /// Consumer: the oldest filled item, or null when none waits.
   Item* take_full() {
     Item* item = nullptr;
-    if (full_.pop(item)) depth_.take();
+    full_.pop(item);
     return item;
   }
   /// Consumer: done with the item.
-  void give_back(Item* item) { free_.push(item); }
+  void give_back(Item* item) {
+    depth_.take();
+    free_.push(item);
+  }
   /// Consumer: sleeps until an item may wait, wake() was called or the time is over.
   void wait(std::chrono::milliseconds longest) { filled_.wait(longest); }
 
   /// Any thread: lets wait() return.
   void wake() { filled_.wake(); }
-  /// Any thread: how many items wait for the consumer.
+  /// Any thread: how many items are not free, those that the consumer works on with them.
   QueueFill fill() const { return depth_.fill(); }
 
 private:

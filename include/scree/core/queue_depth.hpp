@@ -9,7 +9,7 @@ namespace scree {
 
 /// How full a ring is.
 struct QueueFill {
-  std::size_t waiting = 0;  ///< items, now
+  std::size_t waiting = 0;  ///< items in it, now
   std::size_t most = 0;     ///< that have waited at once since the start
   std::size_t capacity = 0;
 };

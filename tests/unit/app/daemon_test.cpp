@@ -160,7 +160,7 @@ TEST_F(DaemonTest, ASlowDetectorLosesTheNewestSweepsAndTheyAreCounted) {
   EXPECT_EQ(listener_->lists, 0);
   EXPECT_EQ(listener_->health.state, health_t::BLIND);
   EXPECT_THAT(listener_->health.reason, HasSubstr("detector"));
-  EXPECT_EQ(listener_->health.queues[0].waiting, 2);
+  EXPECT_EQ(listener_->health.queues[0].waiting, 3);
   EXPECT_EQ(listener_->health.queues[0].capacity, 3);
   is_stuck_ = false;
   EXPECT_TRUE(listener_->until([&] { return listener_->health.state == health_t::OK; }));
