@@ -1,5 +1,6 @@
 #include "scree/publish/subscriber.hpp"
 
+#include <cerrno>
 #include <utility>
 
 #include "scree/publish/multicast.hpp"
@@ -27,7 +28,8 @@ Subscriber::Subscriber(lcm_t* lcm, OnList on_list, OnHealth on_health)
 }
 
 bool Subscriber::handle(int milliseconds) {
-  return lcm_handle_timeout(lcm_.get(), milliseconds) >= 0;
+  errno = 0;
+  return lcm_handle_timeout(lcm_.get(), milliseconds) >= 0 || errno == EINTR;
 }
 
 template <class Message, class Handler, Handler Subscriber::*handler>

@@ -35,6 +35,7 @@ void add_picture(CLI::App& app);
 void add_replay(CLI::App& app);
 void add_record(CLI::App& app);
 void add_watch(CLI::App& app);
+void add_top(CLI::App& app);
 void add_config(CLI::App& app);
 
 }  // namespace scree::cli

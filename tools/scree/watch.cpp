@@ -5,7 +5,7 @@
 #include <string>
 
 #include "commands.hpp"
-#include "scree/config/settings.hpp"
+#include "lcm_options.hpp"
 #include "scree/publish/jsonl.hpp"
 #include "scree/publish/messages.hpp"
 #include "scree/publish/subscriber.hpp"
@@ -17,19 +17,11 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 struct Options {
-  std::string config, url;
+  LcmOptions lcm;
   bool json = false;
   int count = 0;
   double seconds = 0, every = 0;
 };
-
-std::string url_of(const Options& options) {
-  if (!options.url.empty()) return options.url;
-  if (options.config.empty()) return Settings().lcm.url;
-  const auto settings = load_settings(options.config);
-  if (!settings) throw Failure(settings.error().message);
-  return settings->lcm.url;
-}
 
 /// Prints messages as they come, each at once, so that a pipe behind it sees them too.
 class Watcher {
@@ -98,7 +90,7 @@ std::string nothing_came(const Options& options, const Watcher& watcher, const s
 }
 
 void watch(const Options& options) {
-  const std::string url = url_of(options);
+  const std::string url = options.lcm.url_of();
   Watcher watcher(options);
   const auto subscriber = Subscriber::open(
       url, [&](const obstacle_list_t& list) { watcher.take_list(list); },
@@ -127,10 +119,7 @@ void watch(const Options& options) {
 void add_watch(CLI::App& app) {
   CLI::App* command = app.add_subcommand("watch", "Print obstacle lists and health as they come");
   auto options = std::make_shared<Options>();
-  command->add_option("--config", options->config, "configuration that names the LCM url")
-      ->type_name("FILE");
-  command->add_option("--url", options->url, "LCM url [" + Settings().lcm.url + "]")
-      ->type_name("URL");
+  options->lcm.add_to(*command);
   command->add_flag("--json", options->json, "the lists alone, one JSON object a line");
   command->add_option("--count", options->count, "end after this many lists")
       ->check(CLI::PositiveNumber);

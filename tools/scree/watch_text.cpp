@@ -3,43 +3,29 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
+
+#include "health_words.hpp"
 
 namespace scree::cli {
 namespace {
 
-std::string time_of_day(std::int64_t stamp_ns) {
-  constexpr std::int64_t kSecond = 1'000'000'000;
-  const std::int64_t in_day = (stamp_ns % (86400 * kSecond) + 86400 * kSecond) % (86400 * kSecond);
-  const std::int64_t seconds = in_day / kSecond;
-  return fmt::format("{:02}:{:02}:{:02}.{:03}", seconds / 3600, seconds / 60 % 60, seconds % 60,
-                     in_day % kSecond / 1'000'000);
-}
-
-const char* state_name(std::int8_t state) {
-  constexpr std::array kNames = {"never seen", "ok", "silent", "wrong data", "slow"};
-  const auto index = static_cast<std::uint8_t>(state);
-  return index < kNames.size() ? kNames[index] : "in an unknown state";
-}
-
-/// Counts that are not 0, as "lost 3, refused for size 7".
-class Counts {
-public:
-  void add(const std::string& what, std::int64_t count) {
-    if (count != 0) text_ += fmt::format("{}{} {}", text_.empty() ? "" : ", ", what, count);
+/// As "lost 3, refused for size 7".
+std::string text_of(const Counts& counts) {
+  std::string text;
+  for (const auto& [what, count] : counts) {
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", what, count);
   }
-  const std::string& text() const { return text_; }
-
-private:
-  std::string text_;
-};
+  return text;
+}
 
 std::string clock_text(const sensor_health_t& sensor) {
-  if (sensor.clock == sensor_health_t::UNSYNCHRONISED) return "clock unsynchronised";
-  const char* how = sensor.clock == sensor_health_t::PPS_LOCKED ? "PPS-locked" : "estimated";
-  return fmt::format("clock {} to {:.3f} ms", how, sensor.clock_accuracy_ms);
+  std::string text = fmt::format("clock {}", clock_name(sensor.clock));
+  if (sensor.clock != sensor_health_t::UNSYNCHRONISED) {
+    text += fmt::format(" to {:.3f} ms", sensor.clock_accuracy_ms);
+  }
+  return text;
 }
 
 void append_sensor(const char* name, const sensor_health_t& sensor, const std::string& note,
@@ -50,30 +36,8 @@ void append_sensor(const char* name, const sensor_health_t& sensor, const std::s
     text += fmt::format(", {:.0f} of {:.0f}/s, {}", sensor.rate, sensor.expected_rate,
                         clock_text(sensor));
   }
-  Counts counts;
-  counts.add("lost", sensor.lost);
-  counts.add("dropped by the kernel", sensor.kernel_drops);
-  for (std::size_t i = 0; i < sensor.refused.size(); ++i) {
-    counts.add("refused for " + sensor.refused_reason[i], sensor.refused[i]);
-  }
-  text += (counts.text().empty() ? "" : "; " + counts.text()) + '\n';
-}
-
-void append_dropped(const health_t& health, std::string& text) {
-  Counts counts;
-  counts.add("sweeps dropped", health.sweeps_dropped);
-  counts.add("sweeps without a return", health.sweeps_empty);
-  counts.add("lists failed", health.lists_failed);
-  counts.add("lists dropped", health.lists_dropped);
-  counts.add("points dropped", health.points_dropped);
-  counts.add("points refused", health.points_refused);
-  counts.add("edge points dropped", health.edge_points_dropped);
-  counts.add("obstacles dropped", health.obstacles_dropped);
-  counts.add("map points dropped", health.map_points_dropped);
-  counts.add("tracks dropped", health.tracks_dropped);
-  counts.add("samples dropped", health.samples_dropped);
-  counts.add("samples refused", health.samples_refused);
-  if (!counts.text().empty()) text += "              " + counts.text() + '\n';
+  const std::string losses = text_of(losses_of(sensor));
+  text += (losses.empty() ? "" : "; " + losses) + '\n';
 }
 
 /// How long the detector takes, how full the queues have been, page faults, temperature.
@@ -126,7 +90,8 @@ void append_text(const health_t& health, std::string& text) {
   append_sensor("encoder", health.encoder, ", bus " + health.encoder_bus, text);
   if (!health.lines_problem.empty()) text += "              " + health.lines_problem + '\n';
   append_work(health, text);
-  append_dropped(health, text);
+  const std::string drops = text_of(drops_of(health));
+  if (!drops.empty()) text += "              " + drops + '\n';
 }
 
 }  // namespace scree::cli
