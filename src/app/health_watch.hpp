@@ -34,7 +34,7 @@ public:
   // The longest turn, and all that a latency can change meanwhile: with all else in order.
   static constexpr std::int64_t kListsStop = 400'000'000;
   // What is found in a sweep that old, as after a pause of the whole computer, is no sight.
-  static constexpr std::int64_t kOldSweep = 1'000'000'000;
+  static constexpr std::int64_t kOldSweep = 5'000'000'000;
 
   HealthWatch(const Settings& settings, std::int64_t now_ns);
 
