@@ -61,8 +61,7 @@ bool HealthWatch::update(std::int64_t now_ns, const LidarStatus& lidar, const Im
   health.reason = blind_reason(now_ns, lidar, health.lidar.state, detector);
   const bool sees = health.reason.empty();
   health.state = sees ? health_t::OK : health_t::BLIND;
-  if (health.state != before)
-    say(!sees, sees ? "sees: obstacle lists go out" : "blind: " + health.reason);
+  if (health.state != before) say_sight(now_ns, health.reason);
   sweeps_dropped_.say(now_ns, lidar.sweeps_dropped, "sweeps dropped: the detector was too slow",
                       log_);
   return has_changed || health.reason != reason_before;
@@ -146,6 +145,18 @@ std::string HealthWatch::blind_reason(std::int64_t now_ns, const LidarStatus& li
   if (detector.last_list_ns == 0) return "no sweep has got through the detector yet";
   if (now_ns - detector.last_list_ns > kListsStop) return "sweeps come, but no lists go out";
   return "";
+}
+
+/// Not again and again for one reason, as of a detector that is late with every other sweep.
+void HealthWatch::say_sight(std::int64_t now_ns, const std::string& reason) {
+  constexpr std::int64_t kPause = 10'000'000'000;
+  const bool sees = reason.empty();
+  if (!sees) says_sight_ = reason != said_reason_ || now_ns - said_at_ns_ >= kPause;
+  if (!says_sight_) return;
+  say(!sees, sees ? "sees: obstacle lists go out" : "blind: " + reason);
+  if (sees) return;
+  said_reason_ = reason;
+  said_at_ns_ = now_ns;
 }
 
 void HealthWatch::say_first_packets(const LidarStatus& lidar) {

@@ -54,6 +54,7 @@ private:
   std::string blind_reason(std::int64_t now_ns, const LidarStatus& lidar, std::int8_t state,
                            const DetectorStatus& detector) const;
   void say(bool is_warning, std::string text) { log_.push_back({is_warning, std::move(text)}); }
+  void say_sight(std::int64_t now_ns, const std::string& reason);
   void say_first_packets(const LidarStatus& lidar);
   void say_pulses(const LidarStatus& lidar);
 
@@ -62,6 +63,9 @@ private:
   LogLines log_;
   SensorWatch lidar_, imu_, encoder_;
   velodyne::Firmware said_firmware_ = velodyne::Firmware::undecided;
+  bool says_sight_ = true;
+  std::string said_reason_;
+  std::int64_t said_at_ns_ = 0;
   bool said_datagram_ = false, said_packet_ = false;
   bool said_pulse_ = false, said_pps_lost_ = false;
   Growth sweeps_dropped_;

@@ -215,6 +215,27 @@ TEST_F(HealthWatchTest, RefusalsAreSaidAtMostEveryTenSeconds) {
   EXPECT_THAT(drive(2000), HasSubstr("FF EE (899 more, 900 since the start)"));
 }
 
+TEST_F(HealthWatchTest, ADetectorThatIsLateAgainAndAgainIsSaidEveryTenSeconds) {
+  EXPECT_THAT(drive(50), HasSubstr("I sees"));
+  const auto be_late = [&] {
+    now_ += 300 * kMillisecond;
+    datagram();
+    packet();
+    measure(300);
+    return update();
+  };
+  EXPECT_THAT(be_late(), HasSubstr("W blind: the detector is late"));
+  EXPECT_THAT(drive(50), HasSubstr("I sees"));
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_THAT(be_late(), IsEmpty());
+    EXPECT_EQ(health_.state, health_t::BLIND);
+    EXPECT_THAT(drive(50), IsEmpty());
+    EXPECT_EQ(health_.state, health_t::OK);
+  }
+  drive(5000);
+  EXPECT_THAT(be_late(), HasSubstr("W blind: the detector is late"));
+}
+
 TEST_F(HealthWatchTest, AnotherReasonAndAnotherStateOfAClockAreChanges) {
   drive(50);
   status_.clock.state = ClockState::pps_locked;
