@@ -19,7 +19,7 @@ bool set_option(const Descriptor& socket, int level, int option, const T& value)
 }
 
 Error reason_of(int error, const std::string& interface) {
-  const std::string cannot = "cannot listen on CAN interface " + interface + ": ";
+  const std::string cannot = "cannot use CAN interface " + interface + ": ";
   switch (error) {
     case ENODEV:
       return {cannot + "there is no such interface (`ip link` lists them)"};
@@ -49,7 +49,9 @@ bool set_filters(const Descriptor& socket, const std::optional<CanId>& only) {
   return set_option(socket, SOL_CAN_RAW, CAN_RAW_FILTER, filter);
 }
 
-Result<Descriptor> open_interface(const std::string& interface, const std::optional<CanId>& only) {
+/// @param set_options returns whether all could be set
+template <class SetOptions>
+Result<Descriptor> open_interface(const std::string& interface, SetOptions set_options) {
   const auto failure = [&](int error) { return tl::make_unexpected(reason_of(error, interface)); };
   if (interface.empty() || interface.size() >= IFNAMSIZ) return failure(ENODEV);
   Descriptor socket(::socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, CAN_RAW));
@@ -59,13 +61,24 @@ Result<Descriptor> open_interface(const std::string& interface, const std::optio
   sockaddr_can address{};
   address.can_family = AF_CAN;
   address.can_ifindex = request.ifr_ifindex;
-  const int on = 1;
-  if (!set_option(socket, SOL_SOCKET, SO_TIMESTAMPNS, on) ||
-      !set_option(socket, SOL_SOCKET, SO_RXQ_OVFL, on) || !set_filters(socket, only) ||
+  if (!set_options(socket) ||
       bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
     return failure(errno);
   }
   return socket;
+}
+
+bool prepare_to_listen(const Descriptor& socket, const std::optional<CanId>& only) {
+  const int on = 1;
+  return set_option(socket, SOL_SOCKET, SO_TIMESTAMPNS, on) &&
+         set_option(socket, SOL_SOCKET, SO_RXQ_OVFL, on) && set_filters(socket, only);
+}
+
+/// It hears nothing, and sends both kinds of frames.
+bool prepare_to_send(const Descriptor& socket) {
+  const int on = 1;
+  return setsockopt(socket.get(), SOL_CAN_RAW, CAN_RAW_FILTER, nullptr, 0) == 0 &&
+         set_option(socket, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, on);
 }
 
 bool is_interface_up(const std::string& interface, const Descriptor& socket) {
@@ -76,8 +89,13 @@ bool is_interface_up(const std::string& interface, const Descriptor& socket) {
 }  // namespace
 
 CanSocket::Device can_device(const std::string& interface, std::optional<CanId> only) {
-  return {[=] { return open_interface(interface, only); },
+  const auto listen = [=](const Descriptor& socket) { return prepare_to_listen(socket, only); };
+  return {[=] { return open_interface(interface, listen); },
           [=](const Descriptor& socket) { return is_interface_up(interface, socket); }};
+}
+
+Result<Descriptor> open_for_sending(const std::string& interface) {
+  return open_interface(interface, prepare_to_send);
 }
 
 }  // namespace scree::encoder

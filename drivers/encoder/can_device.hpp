@@ -16,4 +16,7 @@ struct CanId {
 /// for all
 CanSocket::Device can_device(const std::string& interface, std::optional<CanId> only);
 
+/// A socket that only sends on an interface.
+Result<Descriptor> open_for_sending(const std::string& interface);
+
 }  // namespace scree::encoder

@@ -251,7 +251,7 @@ TEST(CanSocket, AnInterfaceThatIsNotThereIsOneSentence) {
     const auto socket = CanSocket::open(name);
     ASSERT_FALSE(socket);
     EXPECT_THAT(socket.error().message,
-                AllOf(HasSubstr("cannot listen on CAN interface"), HasSubstr(name)));
+                AllOf(HasSubstr("cannot use CAN interface"), HasSubstr(name)));
   }
   EncoderSettings settings;
   settings.interface = "nocan0";
