@@ -47,7 +47,7 @@ class DaemonTest(ProgramTest):
     def replay(self, *arguments):
         capture = os.path.join(self.folder, "lidar.pcap")
         write_capture(capture, seconds=1)
-        return [SCREE, "replay", capture, "--to", f"127.0.0.1:{self.port}",
+        return [SCREE, "replay", capture, "--address", f"127.0.0.1:{self.port}",
                 "--position-port", str(self.position_port), *arguments]  # fmt: skip
 
     def test_a_replayed_capture_gives_lists_and_health(self):

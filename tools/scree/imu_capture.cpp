@@ -28,14 +28,17 @@ std::string refusals(const ImuCounters& counters) {
 
 }  // namespace
 
-ImuCapture::ImuCapture(const std::filesystem::path& capture)
-    : name_(capture.string()),
-      reader_(value_or_fail(PcapReader::open(value_or_fail(imu_file(capture))))) {
-  if (reader_.link_type() != kSerialLink) {
-    throw Failure(fmt::format("{}: holds no serial bytes (link type {}, not {})", name_,
-                              reader_.link_type(), kSerialLink));
+PcapReader open_imu(const std::filesystem::path& capture) {
+  auto reader = value_or_fail(PcapReader::open(value_or_fail(imu_file(capture))));
+  if (reader.link_type() != kSerialLink) {
+    throw Failure(fmt::format("{}: holds no serial bytes (link type {}, not {})", capture.string(),
+                              reader.link_type(), kSerialLink));
   }
+  return reader;
 }
+
+ImuCapture::ImuCapture(const std::filesystem::path& capture)
+    : name_(capture.string()), reader_(open_imu(capture)) {}
 
 void ImuCapture::play_until(std::int64_t arrival_ns, ImuStream& stream) {
   while (true) {

@@ -9,6 +9,9 @@
 
 namespace scree::cli {
 
+/// The IMU's file of a capture. Throws Failure, also where it holds no serial bytes.
+PcapReader open_imu(const std::filesystem::path& capture);
+
 /// The IMU's part of a capture, and what was seen of it while it was played.
 class ImuCapture {
 public:

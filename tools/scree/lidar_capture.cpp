@@ -30,15 +30,17 @@ Settings capture_settings(const std::filesystem::path& capture,
   return file ? value_or_fail(load_settings(*file)) : Settings{};
 }
 
-LidarCapture::LidarCapture(const std::filesystem::path& capture, const Settings& settings)
-    : name_(capture.string()),
-      reader_(value_or_fail(PcapReader::open(value_or_fail(lidar_file(capture))))),
-      settings_(settings.lidar) {
-  if (!is_network_link(reader_.link_type())) {
-    throw Failure(
-        fmt::format("{}: holds no network packets (link type {})", name_, reader_.link_type()));
+PcapReader open_lidar(const std::filesystem::path& capture) {
+  auto reader = value_or_fail(PcapReader::open(value_or_fail(lidar_file(capture))));
+  if (!is_network_link(reader.link_type())) {
+    throw Failure(fmt::format("{}: holds no network packets (link type {})", capture.string(),
+                              reader.link_type()));
   }
+  return reader;
 }
+
+LidarCapture::LidarCapture(const std::filesystem::path& capture, const Settings& settings)
+    : name_(capture.string()), reader_(open_lidar(capture)), settings_(settings.lidar) {}
 
 void LidarCapture::play(LidarStream& stream, const OnDatagram& on_other,
                         const std::function<void(std::int64_t)>& before) {

@@ -18,6 +18,9 @@ namespace scree::cli {
 Settings capture_settings(const std::filesystem::path& capture,
                           const std::filesystem::path& config);
 
+/// The lidar's file of a capture. Throws Failure, also where it holds no network packets.
+PcapReader open_lidar(const std::filesystem::path& capture);
+
 /// What came to which port.
 struct PortTraffic {
   std::uint64_t datagrams = 0;

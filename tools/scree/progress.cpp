@@ -9,12 +9,14 @@
 namespace scree::cli {
 
 Progress::Progress(std::string work, std::size_t total)
-    : work_(std::move(work)),
-      total_(std::max<std::size_t>(total, 1)),
-      is_shown_(isatty(STDERR_FILENO) != 0) {}
+    : work_(std::move(work)), total_(std::max<std::size_t>(total, 1)) {}
 
 Progress::~Progress() {
   if (is_shown_) std::fprintf(stderr, "\r\033[K");
+}
+
+bool Progress::is_shown() {
+  return isatty(STDERR_FILENO) != 0;
 }
 
 void Progress::operator()(std::size_t done) {

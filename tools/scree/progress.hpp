@@ -15,11 +15,14 @@ public:
 
   void operator()(std::size_t done);
 
+  /// Whether stderr is a terminal.
+  static bool is_shown();
+
 private:
   std::string work_;
   std::size_t total_;
   std::size_t percent_ = 101;
-  bool is_shown_;
+  const bool is_shown_ = is_shown();
 };
 
 }  // namespace scree::cli

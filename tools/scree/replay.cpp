@@ -1,20 +1,23 @@
-#include <arpa/inet.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
+#include <spdlog/fmt/fmt.h>
 #include <time.h>
 
 #include <cerrno>
 #include <charconv>
 #include <cstdio>
 #include <cstring>
+#include <limits>
 #include <memory>
+#include <optional>
 
+#include "capture_events.hpp"
 #include "commands.hpp"
+#include "imu_terminal.hpp"
 #include "interruption.hpp"
-#include "scree/capture/capture.hpp"
-#include "scree/capture/pcap_reader.hpp"
-#include "scree/config/settings.hpp"
-#include "scree/core/descriptor.hpp"
+#include "lidar_capture.hpp"
+#include "progress.hpp"
+#include "scree/drivers/encoder/can_sender.hpp"
+#include "time_range.hpp"
+#include "udp_target.hpp"
 
 namespace scree::cli {
 namespace {
@@ -24,8 +27,9 @@ constexpr std::int64_t kSecond = 1'000'000'000;
 constexpr std::int64_t kTurnPause = 1'327'000;
 
 struct Options {
-  std::string capture, config, to = "127.0.0.1", rate = "1";
+  std::string capture, config, address = "127.0.0.1", rate = "1", serial, can;
   int position_port = 0;
+  TimeRange range;
   bool loop = false;
 };
 
@@ -54,155 +58,243 @@ double rate_of(const std::string& text) {
   return rate;
 }
 
-/// A socket that sends to one port, and hears from the kernel when nobody listens there.
-class Port {
-public:
-  Port(const std::string& address, int port)
-      : name_(address + ":" + std::to_string(port)), socket_(::socket(AF_INET, SOCK_DGRAM, 0)) {
-    sockaddr_in to{};
-    to.sin_family = AF_INET;
-    to.sin_port = htons(static_cast<std::uint16_t>(port));
-    if (inet_pton(AF_INET, address.c_str(), &to.sin_addr) != 1) {
-      throw CLI::ValidationError("--to", "must be an IPv4 address, as in 127.0.0.1:2368");
-    }
-    const int on = 1;
-    setsockopt(socket_.get(), SOL_SOCKET, SO_BROADCAST, &on, sizeof on);
-    if (connect(socket_.get(), reinterpret_cast<const sockaddr*>(&to), sizeof to) != 0) {
-      throw Failure("cannot send to " + name_ + ": " + std::strerror(errno));
-    }
+UdpTarget target(const Options& options, int port) {
+  return {options.address.substr(0, options.address.find(':')), port};
+}
+
+int data_port(const Options& options, int otherwise) {
+  const std::size_t colon = options.address.find(':');
+  if (colon == std::string::npos) return otherwise;
+  int port = 0;
+  const char* end = options.address.data() + options.address.size();
+  const auto read = std::from_chars(options.address.data() + colon + 1, end, port);
+  if (read.ec != std::errc{} || read.ptr != end || port < 1 || port > 65535) {
+    throw CLI::ValidationError("--address", "has no valid port after the colon");
+  }
+  return port;
+}
+
+/// The encoder's bus, and what became of the frames.
+struct CanTarget {
+  explicit CanTarget(const std::string& interface)
+      : name(interface),
+        // Errors were never on a real bus; a virtual one shows them to whoever listens.
+        takes_errors(std::filesystem::exists("/sys/devices/virtual/net/" + interface)),
+        sender(value_or_fail(encoder::CanSender::open(interface))) {}
+
+  void send(const CanFrame& frame) {
+    if (frame.is_error && !takes_errors) return;
+    const int error = sender.send(frame);
+    ++(error == 0 ? sent : lost);
+    if (error != 0) reason = std::strerror(error);
   }
 
-  void send(std::span<const std::uint8_t> bytes) {
-    if (::send(socket_.get(), bytes.data(), bytes.size(), 0) >= 0) {
-      ++sent_;
-    } else if (errno == ECONNREFUSED) {
-      ++refused_;
-    } else if (errno != EINTR) {
-      throw Failure("cannot send to " + name_ + ": " + std::strerror(errno));
-    }
-  }
-
-  const std::string& name() const { return name_; }
-  std::uint64_t sent() const { return sent_; }
-  /// The kernel tells of a datagram that nobody took only at the next one, which it does not send.
-  bool is_deaf() const { return refused_ >= 25 && refused_ + 1 >= sent_; }
-
-private:
-  std::string name_;
-  Descriptor socket_;
-  std::uint64_t sent_ = 0, refused_ = 0;
+  std::string name, reason;
+  bool takes_errors;
+  encoder::CanSender sender;
+  std::uint64_t sent = 0, lost = 0;
 };
 
-/// Where the capture's datagrams go, and in which time.
+/// Where a capture goes, and in which time.
 class Replay {
 public:
   Replay(const Options& options, const LidarSettings& lidar)
       : rate_(rate_of(options.rate)),
+        range_(options.range),
         captured_data_(lidar.port),
         captured_position_(lidar.position_port),
-        data_(address_of(options), port_of(options, lidar.port)),
-        position_(address_of(options),
-                  options.position_port != 0 ? options.position_port : lidar.position_port),
-        start_ns_(monotonic_ns()) {}
+        data_(target(options, data_port(options, lidar.port))),
+        position_(target(
+            options, options.position_port != 0 ? options.position_port : lidar.position_port)) {
+    if (!options.can.empty()) can_.emplace(options.can);
+    if (!options.serial.empty()) imu_.emplace(options.serial);
+  }
 
-  /// Sends the whole capture once.
-  void play(PcapReader& reader) {
-    std::int64_t first = 0, last = 0;
-    bool is_first = true;
-    Datagram datagram;
-    while (!is_interrupted() && reader.next(datagram)) {
-      const bool is_data = datagram.destination_port == captured_data_;
-      if (!is_data && datagram.destination_port != captured_position_) continue;
-      if (is_first) first = datagram.arrival_ns;
-      is_first = false;
-      last = datagram.arrival_ns - first;
-      if (rate_ > 0) sleep_until(turn_start_ns_ + start_ns_ + in_real_time(last));
-      if (!is_interrupted()) (is_data ? data_ : position_).send(datagram.payload);
-      if (data_.is_deaf()) {
-        throw Failure("nobody listens on " + data_.name() + ": is screed running?");
+  /// Until the program that listens to the IMU has started it. Throws Failure where none comes.
+  void wait_for_listener() {
+    if (!imu_) return;
+    fmt::print(stderr, "scree: the IMU is {}, waiting for screed to open it\n", imu_->name());
+    constexpr std::int64_t kPatience = 20 * kSecond, kConfigures = kSecond;
+    const std::int64_t begin = monotonic_ns();
+    std::int64_t opened_ns = 0;
+    while (!is_interrupted()) {
+      imu_->serve(kSecond / 50);
+      const std::int64_t now = monotonic_ns();
+      if (!imu_->is_open()) {
+        opened_ns = 0;
+        if (now - begin > kPatience) {
+          throw Failure(fmt::format("nobody opens {}: does screed run, with imu.device = \"{}\"?",
+                                    imu_->name(), imu_->name()));
+        }
+        continue;
       }
+      if (opened_ns == 0) opened_ns = now;
+      // Who does not configure it takes what it sends.
+      const bool is_due = imu_->was_configured() || now - opened_ns > kConfigures;
+      if (is_due && imu_->is_listened_to()) return;
+    }
+  }
+
+  /// Sends the whole range once. @param span_ns from the capture's first arrival to its last, for
+  /// the progress; 0: unknown
+  void play(CaptureEvents& events, std::int64_t span_ns) {
+    if (start_ns_ == 0) start_ns_ = turn_start_ns_ = monotonic_ns();
+    const std::int64_t length = std::min(span_ns, range_.end_ns()) - range_.begin_ns();
+    std::optional<Progress> progress;
+    if (span_ns > 0) progress.emplace("playing", static_cast<std::size_t>(length));
+    std::int64_t first_ns = 0, last = 0;
+    CaptureEvent event;
+    for (bool is_first = true; !is_interrupted() && events.next(event); is_first = false) {
+      if (is_first) first_ns = event.arrival_ns;
+      const std::int64_t since_start = event.arrival_ns - first_ns;
+      if (since_start >= range_.end_ns()) break;
+      if (since_start < range_.begin_ns()) continue;
+      last = since_start - range_.begin_ns();
+      wait_until(rate_ > 0 ? turn_start_ns_ + in_real_time(last) : 0);
+      if (!is_interrupted()) send(event);
+      if (progress) (*progress)(static_cast<std::size_t>(last));
     }
     turn_start_ns_ += rate_ > 0 ? in_real_time(last + kTurnPause) : 0;
   }
 
+  /// Until what was sent last is read: with the terminal it would be lost.
+  void finish() {
+    if (!imu_) return;
+    const std::int64_t end = monotonic_ns() + kSecond / 5;
+    for (std::int64_t now = 0; (now = monotonic_ns()) < end;) imu_->serve(end - now);
+  }
+
+  bool has_sent() const {
+    return data_.sent() + position_.sent() > 0 || (imu_ && imu_->sent() > 0) ||
+           (can_ && can_->sent > 0);
+  }
+
   void print_summary() const {
     const double seconds = static_cast<double>(monotonic_ns() - start_ns_) / 1e9;
-    std::fprintf(stderr, "sent %llu data packets to %s and %llu position packets to %s in %.2f s\n",
-                 static_cast<unsigned long long>(data_.sent()), data_.name().c_str(),
-                 static_cast<unsigned long long>(position_.sent()), position_.name().c_str(),
-                 seconds);
+    std::string text = fmt::format("sent {} data packets to {} and {} position packets to {}",
+                                   data_.sent(), data_.name(), position_.sent(), position_.name());
+    if (imu_) text += fmt::format(", {} reads of the IMU to {}", imu_->sent(), imu_->name());
+    if (can_) text += fmt::format(", {} frames to {}", can_->sent, can_->name);
+    fmt::print(stderr, "{} in {:.2f} s\n", text, seconds);
+    if (imu_ && imu_->lost() > 0) {
+      fmt::print(stderr, "scree: {} reads of the IMU were not taken\n", imu_->lost());
+    }
+    if (can_ && can_->lost > 0) {
+      fmt::print(stderr, "scree: {} frames were not taken: {}\n", can_->lost, can_->reason);
+    }
   }
-  const Port& data() const { return data_; }
 
 private:
-  static std::string address_of(const Options& options) {
-    return options.to.substr(0, options.to.find(':'));
+  void wait_until(std::int64_t due_ns) {
+    if (!imu_) return sleep_until(due_ns);
+    do {
+      imu_->serve(due_ns - monotonic_ns());
+    } while (!is_interrupted() && monotonic_ns() < due_ns);
   }
-  static int port_of(const Options& options, int otherwise) {
-    const std::size_t colon = options.to.find(':');
-    if (colon == std::string::npos) return otherwise;
-    int port = 0;
-    const char* end = options.to.data() + options.to.size();
-    const auto read = std::from_chars(options.to.data() + colon + 1, end, port);
-    if (read.ec != std::errc{} || read.ptr != end || port < 1 || port > 65535) {
-      throw CLI::ValidationError("--to", "has no valid port after the colon");
+
+  void send(const CaptureEvent& event) {
+    switch (event.sensor) {
+      case Sensor::lidar:
+        if (event.port == captured_data_) data_.send(event.bytes);
+        if (event.port == captured_position_) position_.send(event.bytes);
+        if (data_.is_deaf()) {
+          throw Failure("nobody listens on " + data_.name() + ": is screed running?");
+        }
+        break;
+      case Sensor::imu:
+        if (imu_) imu_->send(event.bytes);
+        break;
+      case Sensor::encoder:
+        if (can_) can_->send(event.frame);
+        break;
     }
-    return port;
   }
+
   std::int64_t in_real_time(std::int64_t captured_ns) const {
     return static_cast<std::int64_t>(static_cast<double>(captured_ns) / rate_);
   }
 
   double rate_;
+  TimeRange range_;
   int captured_data_, captured_position_;
-  Port data_, position_;
-  std::int64_t start_ns_, turn_start_ns_ = 0;
+  UdpTarget data_, position_;
+  std::optional<CanTarget> can_;
+  std::optional<ImuTerminal> imu_;
+  std::int64_t start_ns_ = 0, turn_start_ns_ = 0;
 };
 
-void replay(const Options& options) {
-  const auto file = lidar_file(options.capture);
-  if (!file) throw Failure(file.error().message);
-  Settings settings;
-  if (const auto config = settings_file(options.capture, options.config)) {
-    auto loaded = load_settings(*config);
-    if (!loaded) throw Failure(loaded.error().message);
-    settings = std::move(*loaded);
+/// Says what the capture has and nobody gets.
+void say_what_is_left_out(const CaptureEvents& events, const Options& options) {
+  if (events.has_imu() && options.serial.empty()) {
+    fmt::print(stderr, "scree: the IMU is not played: --serial names a port for it\n");
   }
+  if (events.has_encoder() && options.can.empty()) {
+    fmt::print(stderr, "scree: the encoder is not played: --can names an interface for it\n");
+  }
+}
+
+std::string nothing_sent(const Options& options, const Settings& settings) {
+  const auto [first_ns, last_ns] = span_of(options.capture, settings);
+  if (options.range.begin_ns() > last_ns - first_ns) {
+    return options.range.beyond_end(options.capture, last_ns - first_ns);
+  }
+  return fmt::format("{} has no UDP datagrams to port {} in that time", options.capture,
+                     settings.lidar.port);
+}
+
+void replay(const Options& options) {
+  options.range.check();
+  const Settings settings = capture_settings(options.capture, options.config);
   stop_on_signals();
   Replay replay(options, settings.lidar);
-  do {
-    auto reader = PcapReader::open(*file);
-    if (!reader) throw Failure(reader.error().message);
-    replay.play(*reader);
-    if (replay.data().sent() == 0 && !is_interrupted()) {
-      throw Failure(file->string() + " has no UDP datagrams to port " +
-                    std::to_string(settings.lidar.port));
+  std::int64_t span_ns = 0;
+  if (Progress::is_shown()) {
+    const auto [first_ns, last_ns] = span_of(options.capture, settings);
+    span_ns = last_ns - first_ns;
+  }
+  for (bool is_first = true; is_first || (options.loop && !is_interrupted()); is_first = false) {
+    CaptureEvents events(options.capture, settings);
+    if (is_first) {
+      say_what_is_left_out(events, options);
+      replay.wait_for_listener();
     }
-    if (!reader->broken_off().empty()) {
-      std::fprintf(stderr, "scree: %s\n", reader->broken_off().c_str());
-    }
-  } while (options.loop && !is_interrupted());
+    replay.play(events, span_ns);
+    if (!replay.has_sent() && !is_interrupted()) throw Failure(nothing_sent(options, settings));
+    if (!events.broken_off().empty()) fmt::print(stderr, "scree: {}\n", events.broken_off());
+  }
+  replay.finish();
   replay.print_summary();
 }
 
 }  // namespace
 
 void add_replay(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("replay", "Play a capture to a running daemon, over UDP");
+  CLI::App* command =
+      app.add_subcommand("replay", "Play a capture to a running daemon: UDP, serial, CAN");
   auto options = std::make_shared<Options>();
   command->add_option("capture", options->capture, "capture to play")
       ->required()
       ->type_name("CAPTURE");
-  command->add_option("--rate", options->rate, "times real time; 0 or max: as fast as possible [1]")
-      ->type_name("X");
-  command->add_flag("--loop", options->loop, "begin anew at the end, until interrupted");
   command
-      ->add_option("--to", options->to, "where the daemon listens [127.0.0.1, the capture's port]")
+      ->add_option("--address", options->address,
+                   "where the daemon listens [127.0.0.1, the capture's port]")
       ->type_name("ADDRESS[:PORT]");
   command
       ->add_option("--position-port", options->position_port,
                    "port for position packets [the capture's]")
       ->check(CLI::Range(1, 65535));
+  command
+      ->add_option("--serial", options->serial,
+                   "play the IMU on a pseudo-terminal with this name, the daemon's imu.device")
+      ->type_name("PATH");
+  command
+      ->add_option("--can", options->can,
+                   "play the encoder on this CAN interface, the daemon's encoder.interface")
+      ->type_name("INTERFACE");
+  command->add_option("--rate", options->rate, "times real time; 0 or max: as fast as possible [1]")
+      ->type_name("X");
+  options->range.add_to(*command);
+  command->add_flag("--loop", options->loop, "begin anew at the end, until interrupted");
   command
       ->add_option("--config", options->config,
                    "configuration that names the capture's ports [scree.toml in the capture]")

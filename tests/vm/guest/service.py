@@ -2,6 +2,7 @@
 
 import math
 import os
+import subprocess
 
 from robot import CONFIG
 from steps import Journal, Watch, fails, run, show, until
@@ -100,4 +101,35 @@ def refuses_a_bad_file(robot):
     run("systemctl reload screed")
 
 
-STEPS = [starts_blind, is_confined, sees, hears_pulses, reloads, refuses_a_bad_file]
+def takes_a_replay(robot):
+    """scree replay in place of the sensors: the IMU on a terminal, the encoder on the bus"""
+    robot.silence()
+    robot.mti.unplug()
+    mark = robot.watch.mark()
+    robot.watch.says("BLIND", mark)
+    mark = robot.watch.mark()
+    replay = subprocess.Popen(
+        ["scree", "replay", robot.capture, "--loop", "--serial", robot.mti.port, "--can", "vcan0"]
+    )
+    robot.watch.says(f"imu ok ({robot.mti.port})", mark)
+    robot.watch.says("encoder ok (vcan0, bus active)", mark)
+    robot.watch.says("health ok", mark)
+    robot.lists.next_list(robot.lists.mark())
+    replay.terminate()
+    assert replay.wait() == 0
+    assert not os.path.lexists(robot.mti.port)
+    robot.mti.plug_in()
+    mark = robot.watch.mark()
+    robot.play()
+    robot.watch.says("health ok", mark)
+
+
+STEPS = [
+    starts_blind,
+    is_confined,
+    sees,
+    hears_pulses,
+    reloads,
+    refuses_a_bad_file,
+    takes_a_replay,
+]
