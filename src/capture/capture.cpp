@@ -22,7 +22,7 @@ Result<fs::path> file_of(const fs::path& capture, std::initializer_list<const ch
 }  // namespace
 
 Result<fs::path> lidar_file(const fs::path& capture) {
-  return file_of(capture, {"lidar.pcap", "lidar.pcapng"});
+  return file_of(capture, {"lidar.pcap", "lidar.pcapng", "lidar.lcm"});
 }
 
 Result<fs::path> imu_file(const fs::path& capture) {

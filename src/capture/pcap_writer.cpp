@@ -60,13 +60,14 @@ void write_headers(const Datagram& datagram, std::span<std::uint8_t> frame) {
   put_u16(udp, 6, checksum == 0 ? 0xFFFF : checksum);
 }
 
-void dump(pcap_dumper* dumper, std::int64_t arrival_ns, std::span<const std::uint8_t> bytes) {
+void dump(pcap_dumper* dumper, const PcapRecord& record) {
   pcap_pkthdr header{};
-  header.ts.tv_sec = arrival_ns / 1'000'000'000;
-  header.ts.tv_usec = arrival_ns % 1'000'000'000;  // nanoseconds, by the file's precision
-  header.caplen = header.len = static_cast<bpf_u_int32>(bytes.size());
+  header.ts.tv_sec = record.arrival_ns / 1'000'000'000;
+  header.ts.tv_usec = record.arrival_ns % 1'000'000'000;  // nanoseconds, by the file's precision
+  header.caplen = static_cast<bpf_u_int32>(record.bytes.size());
+  header.len = static_cast<bpf_u_int32>(record.original_size);
   // libpcap's callback type makes the file handle look like a string of bytes.
-  pcap_dump(reinterpret_cast<u_char*>(dumper), &header, bytes.data());
+  pcap_dump(reinterpret_cast<u_char*>(dumper), &header, record.bytes.data());
 }
 
 }  // namespace
@@ -99,15 +100,24 @@ Result<PcapWriter> PcapWriter::create_serial(const std::filesystem::path& file) 
   return create(file, DLT_USER0);
 }
 
+Result<PcapWriter> PcapWriter::create_like(const std::filesystem::path& file,
+                                           const PcapReader& other) {
+  return create(file, other.link_type());
+}
+
 void PcapWriter::write(const Datagram& datagram) {
   frame_.resize(kHeaders + datagram.payload.size());
   std::copy(datagram.payload.begin(), datagram.payload.end(), frame_.begin() + kHeaders);
   write_headers(datagram, frame_);
-  dump(dumper_.get(), datagram.arrival_ns, frame_);
+  write(datagram.arrival_ns, frame_);
 }
 
 void PcapWriter::write(std::int64_t arrival_ns, std::span<const std::uint8_t> bytes) {
-  dump(dumper_.get(), arrival_ns, bytes);
+  dump(dumper_.get(), {arrival_ns, bytes, bytes.size()});
+}
+
+void PcapWriter::write(const PcapRecord& record) {
+  dump(dumper_.get(), record);
 }
 
 Result<void> PcapWriter::flush() {

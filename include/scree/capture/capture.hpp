@@ -7,8 +7,8 @@
 
 namespace scree {
 
-/// The lidar's file of a capture: the capture itself when it is a file, else lidar.pcap or
-/// lidar.pcapng in its folder.
+/// The lidar's file of a capture: the capture itself when it is a file, else lidar.pcap,
+/// lidar.pcapng or lidar.lcm in its folder.
 Result<std::filesystem::path> lidar_file(const std::filesystem::path& capture);
 
 /// The IMU's file of a capture: the capture itself when it is a file, else imu.pcap or imu.pcapng

@@ -100,6 +100,18 @@ TEST(Pcap, SerialRecordsKeepTheirBytes) {
   EXPECT_FALSE(reader->next(record));
 }
 
+TEST(Pcap, CopiedRecordsStayAsTheyAre) {
+  const TemporaryFolder folder;
+  write_packets(folder / "whole.pcap", 3);
+  auto reader = PcapReader::open(folder / "whole.pcap");
+  ASSERT_TRUE(reader);
+  auto writer = PcapWriter::create_like(folder / "copy.pcap", *reader);
+  ASSERT_TRUE(writer);
+  for (PcapRecord record; reader->next(record);) writer->write(record);
+  ASSERT_TRUE(writer->close());
+  EXPECT_EQ(bytes_of(folder / "copy.pcap"), bytes_of(folder / "whole.pcap"));
+}
+
 TEST(Pcap, AFileCutInTheMiddleGivesEverythingBefore) {
   const TemporaryFolder folder;
   write_packets(folder / "whole.pcap", 5);
