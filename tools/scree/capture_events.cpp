@@ -7,7 +7,6 @@
 
 #include "commands.hpp"
 #include "imu_capture.hpp"
-#include "lidar_capture.hpp"
 #include "scree/capture/capture.hpp"
 
 namespace scree::cli {
@@ -29,9 +28,9 @@ CaptureEvents::CaptureEvents(const fs::path& capture, const Settings& settings)
     : interface_(settings.encoder.interface) {
   const auto lidar = lidar_file(capture);
   if (lidar && !fs::is_directory(capture)) {
-    lidar_.emplace(open_lidar(capture));
+    lidar_.emplace(capture, settings.lidar);
   } else {
-    if (lidar) lidar_.emplace(open_lidar(capture));
+    if (lidar) lidar_.emplace(capture, settings.lidar);
     if (imu_file(capture)) imu_.emplace(open_imu(capture));
     if (const auto can = can_file(capture)) can_.emplace(value_or_fail(CanLogReader::open(*can)));
   }
@@ -78,12 +77,9 @@ std::optional<CaptureEvent> CaptureEvents::read(Sensor sensor) {
   return std::nullopt;
 }
 
-const std::string& CaptureEvents::broken_off() const {
-  static const std::string kNothing;
-  for (const auto* reader : {&lidar_, &imu_}) {
-    if (*reader && !(*reader)->broken_off().empty()) return (*reader)->broken_off();
-  }
-  return kNothing;
+std::string CaptureEvents::broken_off() const {
+  if (lidar_ && !lidar_->broken_off().empty()) return lidar_->broken_off();
+  return imu_ ? imu_->broken_off() : "";
 }
 
 std::pair<std::int64_t, std::int64_t> span_of(const fs::path& capture, const Settings& settings) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "lidar_file.hpp"
 #include "scree/capture/can_log.hpp"
 #include "scree/capture/pcap_reader.hpp"
 #include "scree/config/settings.hpp"
@@ -40,12 +41,13 @@ public:
   bool has_imu() const { return imu_.has_value(); }
   bool has_encoder() const { return can_.has_value(); }
   /// Why a file ended before its end; empty if none did.
-  const std::string& broken_off() const;
+  std::string broken_off() const;
 
 private:
   std::optional<CaptureEvent> read(Sensor sensor);
 
-  std::optional<PcapReader> lidar_, imu_;
+  std::optional<LidarFile> lidar_;
+  std::optional<PcapReader> imu_;
   std::optional<CanLogReader> can_;
   std::string interface_;
   std::array<std::optional<CaptureEvent>, kSensors> waiting_;  // of each sensor, its next one

@@ -33,6 +33,7 @@ void add_evaluate(CLI::App& app);
 void add_study(CLI::App& app);
 void add_picture(CLI::App& app);
 void add_replay(CLI::App& app);
+void add_slice(CLI::App& app);
 void add_record(CLI::App& app);
 void add_watch(CLI::App& app);
 void add_top(CLI::App& app);

@@ -22,7 +22,7 @@ const std::map<std::string, void (*)(const DecodeOptions&)>& sensors() {
 void add_decode(CLI::App& app) {
   CLI::App* const command = app.add_subcommand("decode", "What the decoders read, as CSV");
   const auto options = std::make_shared<DecodeOptions>();
-  command->add_option("capture", options->capture, "Folder, .pcap or .pcapng")->required();
+  command->add_option("capture", options->capture, "Folder, .pcap, .pcapng or LCM log")->required();
   command->add_option("--sensor", options->sensor, "Which sensor's values")
       ->required()
       ->check(CLI::IsMember(sensors()));

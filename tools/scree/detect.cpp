@@ -133,7 +133,9 @@ void add_detect(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("detect", "Obstacles in a capture or a point cloud, one line a list");
   auto options = std::make_shared<Options>();
-  command->add_option("INPUT", options->input, "capture (folder or .pcap) or cloud (.pcd)")
+  command
+      ->add_option("INPUT", options->input,
+                   "capture (folder, .pcap, .pcapng, LCM log) or cloud (.pcd)")
       ->required()
       ->check(CLI::ExistingPath);
   command->add_option("--config", options->config, "configuration; default: the capture's own");

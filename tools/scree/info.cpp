@@ -216,7 +216,7 @@ void inform(const Options& options) {
 void add_info(CLI::App& app) {
   CLI::App* const command = app.add_subcommand("info", "What a capture holds");
   const auto options = std::make_shared<Options>();
-  command->add_option("capture", options->capture, "Folder, .pcap or .pcapng")->required();
+  command->add_option("capture", options->capture, "Folder, .pcap, .pcapng or LCM log")->required();
   command->add_flag("--json", options->json, "As JSON");
   command->add_option("--config", options->config,
                       "Configuration; the capture's own scree.toml when not given");

@@ -30,30 +30,23 @@ Settings capture_settings(const std::filesystem::path& capture,
   return file ? value_or_fail(load_settings(*file)) : Settings{};
 }
 
-PcapReader open_lidar(const std::filesystem::path& capture) {
-  auto reader = value_or_fail(PcapReader::open(value_or_fail(lidar_file(capture))));
-  if (!is_network_link(reader.link_type())) {
-    throw Failure(fmt::format("{}: holds no network packets (link type {})", capture.string(),
-                              reader.link_type()));
-  }
-  return reader;
-}
-
 LidarCapture::LidarCapture(const std::filesystem::path& capture, const Settings& settings)
-    : name_(capture.string()), reader_(open_lidar(capture)), settings_(settings.lidar) {}
+    : name_(capture.string()), file_(capture, settings.lidar), settings_(settings.lidar) {}
 
 void LidarCapture::play(LidarStream& stream, const OnDatagram& on_other,
                         const std::function<void(std::int64_t)>& before) {
   Datagram datagram;
-  while (reader_.next(datagram)) {
+  while (file_.next(datagram)) {
     if (datagrams_++ == 0) first_ns_ = datagram.arrival_ns;
     last_ns_ = datagram.arrival_ns;
     if (before) before(datagram.arrival_ns);
     PortTraffic& traffic = ports_[datagram.destination_port];
     ++traffic.datagrams;
     ++traffic.sizes[datagram.payload.size()];
-    ++traffic.senders[datagram.source];
-    const bool wanted = settings_.sender.empty() || ipv4_text(datagram.source) == settings_.sender;
+    const bool has_source = datagram.source != 0;
+    if (has_source) ++traffic.senders[datagram.source];
+    const bool wanted =
+        !has_source || settings_.sender.empty() || ipv4_text(datagram.source) == settings_.sender;
     if (datagram.destination_port == settings_.port && wanted) {
       stream.take(datagram.payload, datagram.arrival_ns);
     } else if (on_other) {
@@ -87,6 +80,10 @@ std::string LidarCapture::why_nothing(const LidarStream& stream) const {
           "{}: all {} packets were cut when they were captured (tcpdump -s 0 keeps "
           "them whole)",
           name_, seen.truncated);
+    }
+    if (file_.is_log()) {
+      return fmt::format("{}: none of its {} LCM messages holds a packet of the lidar", name_,
+                         seen.other);
     }
     return fmt::format("{}: no UDP packets in {} frames", name_, seen.other + seen.fragments);
   }

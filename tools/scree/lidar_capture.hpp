@@ -7,7 +7,7 @@
 #include <map>
 #include <string>
 
-#include "scree/capture/pcap_reader.hpp"
+#include "lidar_file.hpp"
 #include "scree/config/settings.hpp"
 #include "scree/drivers/velodyne/lidar_stream.hpp"
 
@@ -17,9 +17,6 @@ namespace scree::cli {
 /// else the defaults. Throws Failure.
 Settings capture_settings(const std::filesystem::path& capture,
                           const std::filesystem::path& config);
-
-/// The lidar's file of a capture. Throws Failure, also where it holds no network packets.
-PcapReader open_lidar(const std::filesystem::path& capture);
 
 /// What came to which port.
 struct PortTraffic {
@@ -42,19 +39,19 @@ public:
             const std::function<void(std::int64_t)>& before = {});
 
   const std::map<std::uint16_t, PortTraffic>& ports() const { return ports_; }
-  const FrameCounters& frames() const { return reader_.frames(); }
+  const FrameCounters& frames() const { return file_.frames(); }
   /// From the first datagram to the last.
   double seconds() const;
   std::int64_t first_ns() const { return first_ns_; }
-  /// Why the file ended before its end; empty if it did not.
-  const std::string& broken_off() const { return reader_.broken_off(); }
+  /// See LidarFile.
+  std::string broken_off() const { return file_.broken_off(); }
 
   /// One sentence on why no packet was accepted.
   std::string why_nothing(const velodyne::LidarStream& stream) const;
 
 private:
   std::string name_;
-  PcapReader reader_;
+  LidarFile file_;
   LidarSettings settings_;
   std::map<std::uint16_t, PortTraffic> ports_;
   std::int64_t first_ns_ = 0, last_ns_ = 0;

@@ -17,6 +17,7 @@ void add_all(CLI::App& app) {
   scree::cli::add_study(app);
   scree::cli::add_picture(app);
   scree::cli::add_replay(app);
+  scree::cli::add_slice(app);
   scree::cli::add_record(app);
   scree::cli::add_watch(app);
   scree::cli::add_top(app);

@@ -1,4 +1,4 @@
-#include "recorded_config.hpp"
+#include "new_capture.hpp"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -9,6 +9,7 @@
 #include <string>
 
 #include "commands.hpp"
+#include "scree/config/configuration.hpp"
 
 namespace scree::cli {
 namespace {
@@ -44,8 +45,17 @@ std::string text_of(const fs::path& config, const Configuration& configuration) 
 
 }  // namespace
 
-void keep_config(const fs::path& config, const Configuration& configuration,
-                 const fs::path& folder) {
+void make_capture_folder(const fs::path& folder) {
+  std::error_code error;
+  if (fs::exists(folder, error) && (!fs::is_directory(folder, error) || !fs::is_empty(folder))) {
+    throw Failure(folder.string() + " is there already, and not an empty folder");
+  }
+  fs::create_directories(folder, error);
+  if (error) throw Failure(fmt::format("cannot make {}: {}", folder.string(), error.message()));
+}
+
+void keep_config(const fs::path& config, const fs::path& folder) {
+  const Configuration configuration = value_or_fail(read_configuration(config));
   const Settings& settings = configuration.settings;
   std::string toml = text_of(config, configuration);
   const std::set<std::string> names = {settings.encoder.dbc, settings.detect_cloud.network,

@@ -2,14 +2,14 @@
 
 #include <filesystem>
 
-#include "scree/config/configuration.hpp"
-
 namespace scree::cli {
+
+/// Makes the folder of a new capture. Throws Failure where it is there and not empty.
+void make_capture_folder(const std::filesystem::path& folder);
 
 /// Copies a robot's configuration into a capture's folder, as its scree.toml (its drop-ins with
 /// it), and beside it the files that it names (the DBC file, networks), so that they are found from
 /// there; what is shipped with Scree is found anyway. Throws Failure.
-void keep_config(const std::filesystem::path& config, const Configuration& configuration,
-                 const std::filesystem::path& folder);
+void keep_config(const std::filesystem::path& config, const std::filesystem::path& folder);
 
 }  // namespace scree::cli

@@ -12,7 +12,7 @@
 
 #include "commands.hpp"
 #include "interruption.hpp"
-#include "recorded_config.hpp"
+#include "new_capture.hpp"
 #include "recorders.hpp"
 #include "scree/drivers/encoder/dbc.hpp"
 
@@ -28,15 +28,6 @@ struct Options {
   std::string folder, config = "/etc/scree/scree.toml";
   double seconds = 0;
 };
-
-void make_folder(const fs::path& folder) {
-  std::error_code error;
-  if (fs::exists(folder, error) && (!fs::is_directory(folder, error) || !fs::is_empty(folder))) {
-    throw Failure(folder.string() + " is there already, and not an empty folder");
-  }
-  fs::create_directories(folder, error);
-  if (error) throw Failure(fmt::format("cannot make {}: {}", folder.string(), error.message()));
-}
 
 /// What is told on stderr: each problem once, how far it is where stderr is a terminal, and the
 /// sum.
@@ -91,13 +82,12 @@ double run(const std::vector<Recorder*>& recorders, double longest, Report& repo
 }
 
 void record(const Options& options) {
-  const Configuration configuration = value_or_fail(read_configuration(options.config));
-  const Settings& settings = configuration.settings;
+  const Settings settings = value_or_fail(load_settings(options.config));
   const fs::path config = options.config, folder = options.folder;
   value_or_fail(encoder::with_dbc(settings.encoder, config.parent_path()));
   LidarRecorder lidar(settings.lidar);
-  make_folder(folder);
-  keep_config(config, configuration, folder);
+  make_capture_folder(folder);
+  keep_config(config, folder);
   lidar.create(folder / "lidar.pcap");
   ImuRecorder imu(settings.imu, folder / "imu.pcap");
   CanRecorder can(settings.encoder.interface, folder / "can.log");

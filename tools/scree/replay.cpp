@@ -236,7 +236,7 @@ void say_what_is_left_out(const CaptureEvents& events, const Options& options) {
 std::string nothing_sent(const Options& options, const Settings& settings) {
   const auto [first_ns, last_ns] = span_of(options.capture, settings);
   if (options.range.begin_ns() > last_ns - first_ns) {
-    return options.range.beyond_end(options.capture, last_ns - first_ns);
+    return options.range.nothing_in(options.capture, last_ns - first_ns);
   }
   return fmt::format("{} has no UDP datagrams to port {} in that time", options.capture,
                      settings.lidar.port);

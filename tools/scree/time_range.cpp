@@ -36,9 +36,10 @@ std::int64_t TimeRange::end_ns() const {
   return to_ < 0 ? std::numeric_limits<std::int64_t>::max() : nanoseconds(to_);
 }
 
-std::string TimeRange::beyond_end(const std::string& capture, std::int64_t length_ns) const {
-  return fmt::format("{} is {:.3f} s long: nothing is there from {:g} s on", capture,
-                     static_cast<double>(length_ns) * 1e-9, from_);
+std::string TimeRange::nothing_in(const std::string& capture, std::int64_t length_ns) const {
+  return fmt::format("{} is {:.3f} s long: nothing is there from {:g} s {}", capture,
+                     static_cast<double>(length_ns) * 1e-9, from_,
+                     to_ < 0 ? "on" : fmt::format("to {:g} s", to_));
 }
 
 }  // namespace scree::cli

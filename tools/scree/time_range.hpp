@@ -20,8 +20,8 @@ public:
   bool holds(std::int64_t since_start_ns) const {
     return since_start_ns >= begin_ns() && since_start_ns < end_ns();
   }
-  /// One sentence: a capture of that length has nothing from --from on.
-  std::string beyond_end(const std::string& capture, std::int64_t length_ns) const;
+  /// One sentence for a capture of that length that has nothing there.
+  std::string nothing_in(const std::string& capture, std::int64_t length_ns) const;
 
 private:
   double from_ = 0, to_ = -1;
