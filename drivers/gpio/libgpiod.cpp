@@ -32,9 +32,8 @@ tl::unexpected<Error> no_chip(const std::string& name, int error) {
   return fail("there is no GPIO chip " + name + " (`gpiodetect` lists them)");
 }
 
-tl::unexpected<Error> no_line(const LineRequest& wanted) {
-  return fail("GPIO chip " + wanted.chip + " has no line " + wanted.line +
-              " (`gpioinfo` lists them)");
+tl::unexpected<Error> no_line(const std::string& chip, const std::string& line) {
+  return fail("GPIO chip " + chip + " has no line " + line + " (`gpioinfo` lists them)");
 }
 
 tl::unexpected<Error> refused(int error) {
@@ -51,13 +50,31 @@ struct HeldLine {
   gpiod_line* line;
 };
 
+namespace {
+
+gpiod_line* find_line(const Chip& chip, const std::string& line) {
+  const auto number = number_of(line);
+  return number ? gpiod_chip_get_line(chip.get(), *number)
+                : gpiod_chip_find_line(chip.get(), line.c_str());
+}
+
+}  // namespace
+
+Result<std::string> holder_of(const std::string& chip_name, const std::string& line_name) {
+  const Chip chip(gpiod_chip_open_lookup(chip_name.c_str()));
+  if (!chip) return no_chip(chip_name, errno);
+  gpiod_line* const line = find_line(chip, line_name);
+  if (line == nullptr) return no_line(chip_name, line_name);
+  if (!gpiod_line_is_used(line)) return std::string();
+  const char* const holder = gpiod_line_consumer(line);
+  return std::string(holder == nullptr ? "the kernel" : holder);
+}
+
 Result<LineHandle> request(const LineRequest& wanted) {
   Chip chip(gpiod_chip_open_lookup(wanted.chip.c_str()));
   if (!chip) return no_chip(wanted.chip, errno);
-  const auto number = number_of(wanted.line);
-  gpiod_line* const line = number ? gpiod_chip_get_line(chip.get(), *number)
-                                  : gpiod_chip_find_line(chip.get(), wanted.line.c_str());
-  if (line == nullptr) return no_line(wanted);
+  gpiod_line* const line = find_line(chip, wanted.line);
+  if (line == nullptr) return no_line(wanted.chip, wanted.line);
   const int flags = wanted.is_active_low ? GPIOD_LINE_REQUEST_FLAG_ACTIVE_LOW : 0;
   const int failed =
       wanted.is_output
@@ -94,6 +111,7 @@ struct Free {
 template <class T, void (*kFree)(T*)>
 using Owned = std::unique_ptr<T, Free<T, kFree> >;
 using Info = Owned<gpiod_chip_info, gpiod_chip_info_free>;
+using LineInfo = Owned<gpiod_line_info, gpiod_line_info_free>;
 using LineSettings = Owned<gpiod_line_settings, gpiod_line_settings_free>;
 using LineConfig = Owned<gpiod_line_config, gpiod_line_config_free>;
 using RequestConfig = Owned<gpiod_request_config, gpiod_request_config_free>;
@@ -117,7 +135,30 @@ Chip open_chip(const std::string& name) {
   return nullptr;
 }
 
+std::optional<unsigned> find_line(const Chip& chip, const std::string& line) {
+  const auto given = number_of(line);
+  const int found = given ? static_cast<int>(*given)
+                          : gpiod_chip_get_line_offset_from_name(chip.get(), line.c_str());
+  const Info info(gpiod_chip_get_info(chip.get()));
+  if (found < 0 || !info ||
+      static_cast<std::size_t>(found) >= gpiod_chip_info_get_num_lines(info.get())) {
+    return std::nullopt;
+  }
+  return static_cast<unsigned>(found);
+}
+
 }  // namespace
+
+Result<std::string> holder_of(const std::string& chip_name, const std::string& line_name) {
+  const Chip chip = open_chip(chip_name);
+  if (!chip) return no_chip(chip_name, errno);
+  const auto number = find_line(chip, line_name);
+  if (!number) return no_line(chip_name, line_name);
+  const LineInfo line(gpiod_chip_get_line_info(chip.get(), *number));
+  if (!line || !gpiod_line_info_is_used(line.get())) return std::string();
+  const char* const holder = gpiod_line_info_get_consumer(line.get());
+  return std::string(holder == nullptr ? "the kernel" : holder);
+}
 
 struct HeldLine {
   Chip chip;
@@ -129,14 +170,9 @@ struct HeldLine {
 Result<LineHandle> request(const LineRequest& wanted) {
   Chip chip = open_chip(wanted.chip);
   if (!chip) return no_chip(wanted.chip, errno);
-  const auto given = number_of(wanted.line);
-  const int found = given ? static_cast<int>(*given)
-                          : gpiod_chip_get_line_offset_from_name(chip.get(), wanted.line.c_str());
-  const Info info(gpiod_chip_get_info(chip.get()));
-  if (found < 0 || !info ||
-      static_cast<std::size_t>(found) >= gpiod_chip_info_get_num_lines(info.get()))
-    return no_line(wanted);
-  const auto number = static_cast<unsigned>(found);
+  const auto found = find_line(chip, wanted.line);
+  if (!found) return no_line(wanted.chip, wanted.line);
+  const unsigned number = *found;
 
   const LineSettings settings(gpiod_line_settings_new());
   const LineConfig lines(gpiod_line_config_new());

@@ -18,6 +18,8 @@ struct LineRequest {
 
 /// What is wrong, without the name of the key, where the line is not to be had.
 Result<LineHandle> request(const LineRequest& wanted);
+/// See gpio::holder_of().
+Result<std::string> holder_of(const std::string& chip, const std::string& line);
 bool set(HeldLine& line, bool is_on);
 int descriptor_of(const HeldLine& line);
 /// The kernel's stamp of the next edge that waits.

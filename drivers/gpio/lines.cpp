@@ -16,13 +16,23 @@ std::int64_t now_ns(clockid_t clock) {
   return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
 }
 
-Result<LineHandle> open_line(const std::string& name, bool is_active_low, bool is_output,
-                             bool is_on) {
+struct LineName {
+  std::string chip, line;
+};
+
+Result<LineName> parts_of(const std::string& name) {
   const std::size_t colon = name.rfind(':');
   if (colon == std::string::npos || colon == 0 || colon + 1 == name.size()) {
     return fail("must be CHIP:LINE, as gpiochip0:17 is");
   }
-  return request({name.substr(0, colon), name.substr(colon + 1), is_active_low, is_output, is_on});
+  return LineName{name.substr(0, colon), name.substr(colon + 1)};
+}
+
+Result<LineHandle> open_line(const std::string& name, bool is_active_low, bool is_output,
+                             bool is_on) {
+  const auto parts = parts_of(name);
+  if (!parts) return tl::make_unexpected(parts.error());
+  return request({parts->chip, parts->line, is_active_low, is_output, is_on});
 }
 
 /// The error of a key, which it names.
@@ -60,6 +70,12 @@ std::optional<std::int64_t> PulseInput::read() {
 
 int PulseInput::descriptor() const {
   return descriptor_of(*line_);
+}
+
+Result<std::string> holder_of(const std::string& name) {
+  const auto parts = parts_of(name);
+  if (!parts) return tl::make_unexpected(parts.error());
+  return holder_of(parts->chip, parts->line);
 }
 
 Result<Lines> Lines::open(const GpioSettings& settings) {

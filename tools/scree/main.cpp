@@ -20,6 +20,7 @@ void add_all(CLI::App& app) {
   scree::cli::add_slice(app);
   scree::cli::add_record(app);
   scree::cli::add_watch(app);
+  scree::cli::add_doctor(app);
   scree::cli::add_top(app);
   scree::cli::add_config(app);
 }

@@ -37,6 +37,11 @@ TEST(Lines, ANameHasTwoParts) {
   }
 }
 
+TEST(HolderOf, SaysWhatIsWrongWithAName) {
+  EXPECT_THAT(holder_of("nochip:4").error().message, HasSubstr("no GPIO chip nochip"));
+  EXPECT_THAT(holder_of("17").error().message, HasSubstr("must be CHIP:LINE"));
+}
+
 TEST(EdgeHostNs, KnowsTheClockOfTheStamp) {
   constexpr std::int64_t kUp = 86'400'000'000'000, kHost = 1'598'601'600'000'000'000;
   constexpr std::int64_t kAge = 3'000'000;

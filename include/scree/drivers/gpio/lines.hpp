@@ -46,6 +46,10 @@ private:
   LineHandle line_;
 };
 
+/// The name of the program that holds a line, as it has given it; empty: nobody does. Only looks.
+/// @param name as that of an Output
+Result<std::string> holder_of(const std::string& name);
+
 /// The lines that the configuration names.
 struct Lines {
   std::optional<PulseInput> pps;

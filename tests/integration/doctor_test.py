@@ -1,0 +1,131 @@
+"""scree doctor as a program: python3 doctor_test.py SCREED SCREE [TEST ...]"""
+
+import os
+import socket
+import sys
+import threading
+
+from live_sensors import EmulatedMti
+from programs import ProgramTest, free_port, main
+from synthetic_capture import data_packet, write_capture
+
+SCREED, SCREE = sys.argv[1:3]
+
+
+class DoctorTest(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.imu = self.path("imu")
+        self.config = self.write(
+            "robot.toml",
+            f'[lidar]\naddress = "127.0.0.1"\nport = {self.port}\n'
+            f'position_port = {self.position_port}\n[imu]\ndevice = "{self.imu}"\n'
+            f'[encoder]\ninterface = "nocan0"\n[gpio]\nstop = "nochip:4"\n[lcm]\nurl = "{self.url}"\n',
+        )
+
+    def doctor(self, config=None):
+        """Verdict and text of each line by its subject, and the exit code."""
+        done = self.run_to_end(SCREE, "doctor", "--config", config or self.config, "--seconds", "1.5")
+        lines = {}
+        for line in done.stdout.splitlines():
+            verdict, subject, text = line[:6].strip(), line[6:21].strip(), line[21:].strip()
+            self.assertIn(verdict, ["ok", "WRONG", "?"], line)
+            self.assertTrue(subject and text, line)
+            lines[subject] = (verdict, text)
+        wrong = sum(verdict == "WRONG" for verdict, _ in lines.values())
+        self.assertEqual(done.returncode, 1 if wrong else 0, done.stdout + done.stderr)
+        if wrong:
+            self.assertIn(f"{wrong} of {len(lines)} are wrong", done.stderr)
+        return lines
+
+    def assert_line(self, lines, subject, verdict, words):
+        self.assertEqual(lines[subject][0], verdict, lines)
+        self.assertIn(words, lines[subject][1])
+
+    def keep_on(self, work):
+        """Does it all the time, until the test ends."""
+        stop = threading.Event()
+
+        def run():
+            while not stop.wait(0.005):
+                work()
+
+        thread = threading.Thread(target=run)
+        thread.start()
+        self.addCleanup(thread.join)
+        self.addCleanup(stop.set)
+
+    def send(self, payload, port):
+        sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.addCleanup(sender.close)
+        self.keep_on(lambda: sender.sendto(payload, ("127.0.0.1", port)))
+
+    def test_without_anything_each_line_says_what_to_do(self):
+        lines = self.doctor()
+        self.assert_line(lines, "configuration", "ok", self.config)
+        self.assert_line(lines, "screed", "ok", "does not run")
+        self.assert_line(lines, "UDP port", "ok", f"UDP port {self.port} is free")
+        self.assert_line(lines, "LCM", "ok", "has a route")
+        self.assert_line(lines, "lidar", "WRONG", f"nothing came to UDP port {self.port}")
+        self.assert_line(lines, "serial port", "WRONG", f"there is no {self.imu}")
+        self.assert_line(lines, "CAN interface", "WRONG", "there is no nocan0")
+        self.assert_line(lines, "gpio.stop", "WRONG", "no GPIO chip nochip")
+        for subject in ["firewall", "real time", "memory", "clock"]:
+            self.assertIn(subject, lines)
+
+    def test_sensors_that_say_something_are_heard(self):
+        self.send(data_packet(0), self.port)
+        mti = EmulatedMti(self.imu)
+        mti.plug_in()
+        self.addCleanup(mti.unplug)
+        body = b"\xff\x36\x07\xe0\x20\x04\x00\x00\x00\x03"  # MTData2 with a status word
+        self.keep_on(lambda: mti.send(b"\xfa" + body + bytes([-sum(body) % 256])))
+        lines = self.doctor()
+        self.assert_line(lines, "lidar", "ok", "packets a second of 1206 bytes from 127.0.0.1")
+        self.assert_line(lines, "firewall", "ok", "come through")
+        self.assert_line(lines, "serial port", "ok", self.imu)
+        self.assert_line(lines, "IMU", "ok", "answers and measures")
+
+    def test_packets_of_another_size_or_to_another_port_are_said(self):
+        self.send(bytes(512), self.port)
+        self.assert_line(self.doctor(), "lidar", "WRONG", "from 127.0.0.1 has 512 bytes")
+        if os.geteuid() != 0:
+            self.skipTest("seeing packets to other ports takes the right CAP_NET_RAW")
+        port = free_port()
+        self.send(data_packet(0), port)
+        self.config = self.write("other.toml", f"[lidar]\nport = {free_port()}\n")
+        self.assert_line(self.doctor(), "lidar", "WRONG", f"set lidar.port = {port}")
+
+    def test_another_program_on_the_port_is_named(self):
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
+            taken.bind(("127.0.0.1", self.port))
+            lines = self.doctor()
+        self.assert_line(lines, "UDP port", "WRONG", f"(process {os.getpid()})")
+        self.assert_line(lines, "lidar", "?", "another program")
+
+    def test_a_running_daemon_tells_by_its_health(self):
+        with open(self.config) as file:
+            config = self.write("running.toml", file.read().replace('stop = "nochip:4"', ""))
+        daemon = self.start(SCREED, "--config", config)
+        self.read_until(daemon.stderr, "publishing on")
+        lines = self.doctor(config)
+        self.assert_line(lines, "UDP port", "ok", f"bound by screed (process {daemon.pid})")
+        self.assert_line(lines, "screed", "WRONG", "it is blind: nothing has come on UDP port")
+        self.assert_line(lines, "lidar", "WRONG", "nothing came")
+        self.assert_line(lines, "IMU", "WRONG", "nothing has come")
+        capture = self.path("lidar.pcap")
+        write_capture(capture, seconds=1)
+        self.start(SCREE, "replay", capture, "--loop", "--address", f"127.0.0.1:{self.port}",
+                   "--position-port", str(self.position_port))  # fmt: skip
+        self.read_until(daemon.stderr, "sees: obstacle lists go out")
+        lines = self.doctor(config)
+        self.assert_line(lines, "screed", "ok", "it runs, and sees")
+        self.assert_line(lines, "lidar", "ok", "messages a second from 127.0.0.1")
+
+    def test_a_mistake_in_the_configuration_is_the_first_line(self):
+        config = self.write("wrong.toml", "[lidar]\nport = 70000\n")
+        self.assert_line(self.doctor(config), "configuration", "WRONG", f"{config}:2: lidar.port")
+
+
+if __name__ == "__main__":
+    main(sys.argv[3:])
