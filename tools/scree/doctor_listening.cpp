@@ -23,7 +23,10 @@ Listening::Listening(const Settings& settings, bool is_screed_running)
   if (is_screed_running) {
     auto subscriber = Subscriber::open(
         settings.lcm.url, [](const obstacle_list_t&) {},
-        [this](const health_t& health) { health_ = health; });
+        [this](const health_t& health) {
+          if (!first_health_) first_health_ = health;
+          health_ = health;
+        });
     if (subscriber) subscriber_ = std::move(*subscriber);
   } else {
     // Of any sender: one that lidar.sender leaves out must be seen to be named.
@@ -55,10 +58,23 @@ void Listening::listen(double seconds) {
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   lidar_.seconds = seconds;
+  if (health_) average_rates();
   if (!encoder_) return;
   encoder_->seconds = seconds;
   if (const auto state = can_->state(); state != encoder::BusState::silent) {
     encoder_->bus_advice = encoder::kBusStateAdvice[static_cast<std::size_t>(state)];
+  }
+}
+
+void Listening::average_rates() {
+  constexpr std::int64_t kLeastNs = 500'000'000;
+  const std::int64_t time_ns = health_->stamp_ns - first_health_->stamp_ns;
+  if (time_ns < kLeastNs) return;
+  for (sensor_health_t health_t::*const sensor : {&health_t::lidar, &health_t::imu}) {
+    const std::int64_t messages =
+        ((*health_).*sensor).messages - ((*first_health_).*sensor).messages;
+    ((*health_).*sensor).rate =
+        static_cast<double>(messages) / (static_cast<double>(time_ns) * 1e-9);
   }
 }
 

@@ -29,7 +29,7 @@ public:
   /// Why the lidar's port cannot be opened; empty where it was, or screed has it.
   const std::string& port_problem() const { return port_problem_; }
   const LidarTraffic& lidar() const { return lidar_; }
-  /// The last health of screed; nothing where none came.
+  /// The last health of screed, with rates over the whole time; nothing where none came.
   const std::optional<health_t>& health() const { return health_; }
   bool imu_measures() const;
   Finding imu() const;
@@ -38,6 +38,7 @@ public:
 
 private:
   void listen_once(std::int64_t now_ns);
+  void average_rates();
 
   const Settings& settings_;
   LidarTraffic lidar_;
@@ -45,7 +46,7 @@ private:
   std::string port_problem_;
   WireListener wire_;
   std::unique_ptr<Subscriber> subscriber_;
-  std::optional<health_t> health_;
+  std::optional<health_t> first_health_, health_;
   std::optional<xsens::Device> imu_;
   std::string imu_problem_;
   xsens::ImuStream imu_stream_;

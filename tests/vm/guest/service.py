@@ -101,6 +101,20 @@ def refuses_a_bad_file(robot):
     run("systemctl reload screed")
 
 
+def is_examined(robot):
+    """scree doctor finds bus, lines and rights as they should be"""
+    found = subprocess.run(["scree", "doctor"], capture_output=True, text=True).stdout
+    for words in [
+        "2368 is bound by screed (process",
+        "vcan0 is up (vcan)",
+        "frames a second with identifier 0x",
+        "rig:stop is held by screed",
+        "the sensors' threads of screed come first",
+        "screed has locked",
+    ]:
+        assert [line for line in found.splitlines() if line.startswith("ok") and words in line], found
+
+
 def takes_a_replay(robot):
     """scree replay in place of the sensors: the IMU on a terminal, the encoder on the bus"""
     robot.silence()
@@ -128,6 +142,7 @@ STEPS = [
     starts_blind,
     is_confined,
     sees,
+    is_examined,
     hears_pulses,
     reloads,
     refuses_a_bad_file,
