@@ -78,6 +78,7 @@ class DoctorTest(ProgramTest):
         self.assert_line(lines, "configuration", "ok", self.config)
         self.assert_line(lines, "screed", "ok", "does not run")
         self.assert_line(lines, "UDP port", "ok", f"UDP port {self.port} is free")
+        self.assert_line(lines, "position port", "ok", f"UDP port {self.position_port} is free")
         self.assert_line(lines, "LCM", "ok", "has a route")
         self.assert_line(lines, "lidar", "WRONG", f"nothing came to UDP port {self.port}")
         self.assert_line(lines, "serial port", "WRONG", f"there is no {self.imu}")
@@ -122,7 +123,9 @@ class DoctorTest(ProgramTest):
         daemon = self.start(SCREED, "--config", config)
         self.read_until(daemon.stderr, "publishing on")
         lines = self.doctor(config)
-        self.assert_line(lines, "UDP port", "ok", f"bound by screed (process {daemon.pid})")
+        for subject, port in [("UDP port", self.port), ("position port", self.position_port)]:
+            bound = f"127.0.0.1:{port} is bound by screed (process {daemon.pid})"
+            self.assert_line(lines, subject, "ok", bound)
         self.assert_line(lines, "screed", "WRONG", "it is blind: nothing has come on UDP port")
         self.assert_line(lines, "lidar", "WRONG", "nothing came")
         self.assert_line(lines, "IMU", "WRONG", "nothing has come")

@@ -11,6 +11,7 @@
 #include "doctor/firewall.hpp"
 #include "doctor_listening.hpp"
 #include "doctor_probes.hpp"
+#include "scree/core/ipv4.hpp"
 #include "scree/drivers/encoder/dbc.hpp"
 #include "scree/drivers/gpio/lines.hpp"
 #include "scree/publish/multicast.hpp"
@@ -81,24 +82,29 @@ private:
   /// A screed with another configuration is none.
   void find_screed() {
     owner_ = owner_of_port(settings_.lidar.port);
-    if (!owner_) return;
-    // Whose descriptors may not be seen is looked for by its name.
-    if (owner_->id == 0) owner_ = find_process("screed").value_or(*owner_);
-    if (owner_->name == "screed") screed_ = owner_;
+    if (owner_ && owner_->process.name == "screed") screed_ = owner_->process;
+  }
+
+  void judge_port(const char* subject, const char* key, int port,
+                  const std::optional<PortOwner>& owner) {
+    if (!owner) return add(ok(subject, fmt::format("UDP port {} is free", port)));
+    const std::string where = fmt::format("{}:{}", ipv4_text(owner->address), port);
+    if (owner->process.name == "screed") {
+      return add(ok(subject, fmt::format("{} is bound by {}", where, named(owner->process))));
+    }
+    add(wrong(subject, fmt::format("{} is taken by {}: end it, or set {}", where,
+                                   named(owner->process), key)));
   }
 
   void judge_daemon(const Listening& listening) {
-    const std::string port = fmt::format("UDP port {}", settings_.lidar.port);
-    if (!owner_) {
-      add(ok("screed", "it does not run: this looks at the sensors itself"));
-      return add(listening.port_problem().empty() ? ok("UDP port", port + " is free")
-                                                  : wrong("UDP port", listening.port_problem()));
+    if (!owner_ && !listening.port_problem().empty()) {
+      add(wrong("UDP port", listening.port_problem()));
+    } else {
+      judge_port("UDP port", "lidar.port", settings_.lidar.port, owner_);
     }
-    if (!screed_) {
-      return add(wrong("UDP port", fmt::format("{} is taken by {}: end it, or set lidar.port", port,
-                                               named(*owner_))));
-    }
-    add(ok("UDP port", fmt::format("{} is bound by {}", port, named(*screed_))));
+    const int position = settings_.lidar.position_port;
+    judge_port("position port", "lidar.position_port", position, owner_of_port(position));
+    if (!screed_) return add(ok("screed", "it does not run: this looks at the sensors itself"));
     if (const auto& health = listening.health()) {
       return add(health->state == health_t::OK ? ok("screed", "it runs, and sees")
                                                : wrong("screed", "it is blind: " + health->reason));
@@ -198,8 +204,8 @@ private:
 
   Options options_;
   Settings settings_;
-  std::optional<Process> owner_;   // of the lidar's port
-  std::optional<Process> screed_;  // the same, where it is screed
+  std::optional<PortOwner> owner_;  // of the lidar's port, before it is listened on
+  std::optional<Process> screed_;   // the same, where it is screed
   std::vector<Finding> findings_;
 };
 

@@ -81,12 +81,14 @@ std::optional<Process> find_process(const std::string& name) {
       [&](const fs::path& folder) { return read_text(folder / "comm") == name + "\n"; });
 }
 
-std::optional<Process> owner_of_port(int port) {
+std::optional<PortOwner> owner_of_port(int port) {
   for (const UdpSocket& socket : parse_udp_sockets(read_text("/proc/net/udp"))) {
     if (socket.port != port) continue;
     const std::string target = "socket:[" + std::to_string(socket.inode) + "]";
-    return process_that([&](const fs::path& folder) { return has_open(folder, target); })
-        .value_or(Process{});
+    auto process = process_that([&](const fs::path& folder) { return has_open(folder, target); });
+    // A service's descriptors are for root alone, its name is for all.
+    if (!process) process = find_process("screed");
+    return PortOwner{process.value_or(Process{}), socket.address};
   }
   return std::nullopt;
 }

@@ -25,9 +25,13 @@ struct Process {
 };
 /// The first process of that name.
 std::optional<Process> find_process(const std::string& name);
-/// Whoever has bound a UDP port; its id is 0 where it cannot be known without being root. Nothing:
-/// nobody has.
-std::optional<Process> owner_of_port(int port);
+/// Who has bound a UDP port, and on which local address.
+struct PortOwner {
+  Process process;            ///< its id is 0 where it cannot be known without being root
+  std::uint32_t address = 0;  ///< IPv4, most significant byte first in value
+};
+/// Nothing: nobody has.
+std::optional<PortOwner> owner_of_port(int port);
 /// Whoever else has a device open, as far as may be known.
 std::optional<Process> user_of_device(const std::string& device);
 
