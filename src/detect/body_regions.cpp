@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "scree/detect/supervoxels.hpp"
+#include "scree/detect/union_find.hpp"
 
 namespace scree {
 namespace {
@@ -100,7 +101,8 @@ void BodyRegions::join(float saddle) {
     parent_[cell] = cell;
     for (const std::size_t other : neighbours(cell, columns_)) {
       if (parent_[other] == kNoLabel) continue;
-      std::uint32_t higher = root(cell), lower = root(static_cast<std::uint32_t>(other));
+      std::uint32_t higher = root_of(parent_, cell),
+                    lower = root_of(parent_, static_cast<std::uint32_t>(other));
       if (top_[higher] < top_[lower]) std::swap(higher, lower);
       const bool both_rise =
           top_[lower] - top_[cell] > kLeastRise && top_[cell] < saddle * top_[lower];
@@ -114,15 +116,10 @@ void BodyRegions::number(const EdgePoints& bodies, Side side, const GroundSurfac
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if ((bodies.height[i] > 0) != (side == Side::above)) continue;
     const std::size_t cell = surface.cell_at(bodies.points.x[i], bodies.points.y[i]);
-    std::uint32_t& number = number_[root(static_cast<std::uint32_t>(cell))];
+    std::uint32_t& number = number_[root_of(parent_, static_cast<std::uint32_t>(cell))];
     if (number == kNoLabel) number = static_cast<std::uint32_t>(count_++);
     labels_[i] = number;
   }
-}
-
-std::uint32_t BodyRegions::root(std::uint32_t cell) {
-  while (parent_[cell] != cell) cell = parent_[cell] = parent_[parent_[cell]];
-  return cell;
 }
 
 }  // namespace scree

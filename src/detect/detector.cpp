@@ -172,9 +172,9 @@ void Detector::keep_company() {
 }
 
 /// With a gap opened between what stands above the ground and what lies below it, so that a hole
-/// and the rock on its rim never grow together.
+/// and the rock on its rim never grow together. Regions keep the two apart themselves.
 const EdgePoints& Detector::parted() {
-  if (!settings_.uses_surface()) return kept();
+  if (!settings_.uses_surface() || uses_regions()) return kept();
   const auto gap = static_cast<float>(
       2 * (settings_.voxel_size + settings_.seed_distance + settings_.cluster_tolerance));
   parted_.clear();
@@ -209,7 +209,7 @@ void Detector::find_clusters(const EdgePoints& edges) {
     });
     count_members(euclidean_.labels(), euclidean_.count());
   } else if (uses_regions()) {
-    regions_.label(kept(), surface_, {tolerance, static_cast<float>(settings_.saddle)});
+    regions_.label(edges, surface_, {tolerance, static_cast<float>(settings_.saddle)});
     std::ranges::copy(regions_.labels(), labels_.begin());
     count_members(labels_, regions_.count());
   } else {

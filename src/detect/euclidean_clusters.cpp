@@ -4,20 +4,16 @@
 #include <limits>
 
 #include "scree/detect/supervoxels.hpp"
+#include "scree/detect/union_find.hpp"
 
 namespace scree {
 
 EuclideanClusters::EuclideanClusters(std::size_t max_points)
     : cells_(max_points), parent_(max_points), labels_(max_points), label_of_root_(max_points) {}
 
-std::uint32_t EuclideanClusters::root(std::uint32_t cell) {
-  while (parent_[cell] != cell) cell = parent_[cell] = parent_[parent_[cell]];
-  return cell;
-}
-
 void EuclideanClusters::join_cells(PointView points, float square, std::size_t a, std::size_t b) {
-  const std::uint32_t root_a = root(static_cast<std::uint32_t>(a));
-  const std::uint32_t root_b = root(static_cast<std::uint32_t>(b));
+  const std::uint32_t root_a = root_of(parent_, static_cast<std::uint32_t>(a));
+  const std::uint32_t root_b = root_of(parent_, static_cast<std::uint32_t>(b));
   if (root_a == root_b) return;
   const Run run_a = cells_.run(a), run_b = cells_.run(b);
   for (std::uint32_t i = run_a.begin; i < run_a.end; ++i) {
@@ -54,7 +50,8 @@ void EuclideanClusters::cluster(PointView points, float tolerance) {
   labels_.resize(points.size());
   for (std::uint32_t cell = 0; cell < cells; ++cell) {
     const Run run = cells_.run(cell);
-    for (std::uint32_t i = run.begin; i < run.end; ++i) labels_[cells_.source(i)] = root(cell);
+    for (std::uint32_t i = run.begin; i < run.end; ++i)
+      labels_[cells_.source(i)] = root_of(parent_, cell);
   }
   label_of_root_.assign(cells, kNoLabel);
   count_ = 0;

@@ -4,6 +4,8 @@
 
 #include <cctype>
 
+#include "doctor/proc_text.hpp"
+
 namespace scree {
 namespace {
 
@@ -35,15 +37,6 @@ struct Chain {
   bool lets_in() const { return !drops_port && (names_port || !drops_by_default); }
 };
 
-template <class OnLine>
-void each_line(std::string_view text, OnLine on_line) {
-  while (!text.empty()) {
-    const std::string_view line = text.substr(0, text.find('\n'));
-    text.remove_prefix(std::min(line.size() + 1, text.size()));
-    on_line(line);
-  }
-}
-
 bool nft_lets_in(std::string_view ruleset, const std::string& port) {
   bool lets_in = true, is_input = false;
   Chain chain;
@@ -52,24 +45,26 @@ bool nft_lets_in(std::string_view ruleset, const std::string& port) {
     chain = {};
     is_input = false;
   };
-  each_line(ruleset, [&](std::string_view line) {
+  while (!ruleset.empty()) {
+    const std::string_view line = take_line(ruleset);
     if (has(line, "chain ")) end_chain();
     if (has(line, "hook input")) {
       is_input = true;
       chain.drops_by_default = has(line, "policy drop");
     }
     chain.take_rule(line, port);
-  });
+  }
   end_chain();
   return lets_in;
 }
 
 bool iptables_lets_in(std::string_view rules, const std::string& port) {
   Chain chain;
-  each_line(rules, [&](std::string_view line) {
+  while (!rules.empty()) {
+    const std::string_view line = take_line(rules);
     if (has(line, "-P INPUT DROP")) chain.drops_by_default = true;
     chain.take_rule(line, port);
-  });
+  }
   return chain.lets_in();
 }
 

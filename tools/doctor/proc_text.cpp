@@ -10,13 +10,6 @@ namespace {
 
 constexpr std::string_view kBlank = " \t";
 
-/// Takes off the first line.
-std::string_view take_line(std::string_view& text) {
-  const std::string_view line = text.substr(0, text.find('\n'));
-  text.remove_prefix(std::min(line.size() + 1, text.size()));
-  return line;
-}
-
 /// Takes off the first word; empty where there is none.
 std::string_view take_word(std::string_view& text) {
   text.remove_prefix(std::min(text.find_first_not_of(kBlank), text.size()));
@@ -51,6 +44,12 @@ std::optional<UdpSocket> socket_of(std::string_view line) {
 }
 
 }  // namespace
+
+std::string_view take_line(std::string_view& text) {
+  const std::string_view line = text.substr(0, text.find('\n'));
+  text.remove_prefix(std::min(line.size() + 1, text.size()));
+  return line;
+}
 
 std::vector<UdpSocket> parse_udp_sockets(std::string_view text) {
   std::vector<UdpSocket> sockets;

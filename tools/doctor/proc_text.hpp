@@ -9,6 +9,9 @@
 // The kernel's texts under /proc (man 5 proc). Any text is safe.
 namespace scree {
 
+/// Takes off the first line of any text.
+std::string_view take_line(std::string_view& text);
+
 /// A line of /proc/net/udp.
 struct UdpSocket {
   std::uint32_t address = 0;  ///< IPv4, most significant byte first in value; 0: all

@@ -37,7 +37,6 @@ public:
   /// False at the end.
   bool next(CaptureEvent& event);
 
-  bool has_lidar() const { return lidar_.has_value(); }
   bool has_imu() const { return imu_.has_value(); }
   bool has_encoder() const { return can_.has_value(); }
   /// Why a file ended before its end; empty if none did.

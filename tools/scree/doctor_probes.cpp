@@ -48,6 +48,11 @@ std::optional<Process> process_that(Holds holds) {
   return std::nullopt;
 }
 
+std::optional<Process> process_named(const std::string& name) {
+  return process_that(
+      [&](const fs::path& folder) { return read_text(folder / "comm") == name + "\n"; });
+}
+
 /// Whether one of a process's descriptors is a link to that.
 bool has_open(const fs::path& process, const std::string& target) {
   std::error_code error;
@@ -76,18 +81,13 @@ std::string output_of(const char* command) {
   return text;
 }
 
-std::optional<Process> find_process(const std::string& name) {
-  return process_that(
-      [&](const fs::path& folder) { return read_text(folder / "comm") == name + "\n"; });
-}
-
 std::optional<PortOwner> owner_of_port(int port) {
   for (const UdpSocket& socket : parse_udp_sockets(read_text("/proc/net/udp"))) {
     if (socket.port != port) continue;
     const std::string target = "socket:[" + std::to_string(socket.inode) + "]";
     auto process = process_that([&](const fs::path& folder) { return has_open(folder, target); });
     // A service's descriptors are for root alone, its name is for all.
-    if (!process) process = find_process("screed");
+    if (!process) process = process_named("screed");
     return PortOwner{process.value_or(Process{}), socket.address};
   }
   return std::nullopt;

@@ -23,8 +23,6 @@ struct Process {
   int id = 0;
   std::string name;
 };
-/// The first process of that name.
-std::optional<Process> find_process(const std::string& name);
 /// Who has bound a UDP port, and on which local address.
 struct PortOwner {
   Process process;            ///< its id is 0 where it cannot be known without being root

@@ -8,6 +8,7 @@
 
 #include "commands.hpp"
 #include "detections.hpp"
+#include "health_words.hpp"
 #include "lidar_capture.hpp"
 #include "scree/app/pipeline.hpp"
 #include "scree/capture/capture.hpp"
@@ -27,12 +28,6 @@ struct Ground {
   std::string what;           // for the subtitle
   std::int64_t stamp_ns = 0;  // of the sweep
 };
-
-std::string time_of_day(std::int64_t stamp_ns) {
-  const std::int64_t milliseconds = stamp_ns / 1'000'000 % 86'400'000;
-  return fmt::format("{:02}:{:02}:{:02}.{:03} UTC", milliseconds / 3'600'000,
-                     milliseconds / 60'000 % 60, milliseconds / 1000 % 60, milliseconds % 1000);
-}
 
 /// The last whole sweep of a capture. The very last may be a part of a turn: the fuller of the last
 /// two is whole.
@@ -63,8 +58,8 @@ Ground ground_of_capture(const Options& options) {
   report_capture(capture, stream);
   pipeline->process(choice.chosen());
   const PointCloud& ground = pipeline->ground();
-  Ground copy{PointCloud(ground.size()), "one sweep, " + time_of_day(choice.chosen().end_ns),
-              choice.chosen().end_ns};
+  Ground copy{PointCloud(ground.size()),
+              "one sweep, " + time_of_day(choice.chosen().end_ns) + " UTC", choice.chosen().end_ns};
   for (std::size_t i = 0; i < ground.size(); ++i) {
     copy.points.push_back(ground.x[i], ground.y[i], ground.z[i], ground.reflectivity[i]);
   }

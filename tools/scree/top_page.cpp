@@ -67,7 +67,6 @@ void add_header(const TopView& view, Area& area) {
 }
 
 void add_sensor(const char* name, const sensor_health_t& sensor, Area& area) {
-  const Counts losses = losses_of(sensor);
   std::int64_t refused = 0;
   for (const std::int64_t count : sensor.refused) refused += count;
   area.add(fmt::format("{:<8}{:<11}{:>5.0f}/{:<5.0f}{:>6}{:>8}  {:<14}{:>7.2f}{:>11.3f}  {}", name,

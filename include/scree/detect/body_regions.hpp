@@ -41,7 +41,6 @@ private:
   void grow(bool diagonally, float share);
   void join(float saddle);
   void number(const EdgePoints& bodies, Side side, const GroundSurface& surface);
-  std::uint32_t root(std::uint32_t cell);
 
   std::size_t columns_ = 0;
   FixedVector<State> state_, grown_;

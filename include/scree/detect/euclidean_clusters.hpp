@@ -26,7 +26,6 @@ public:
   std::size_t count() const { return count_; }
 
 private:
-  std::uint32_t root(std::uint32_t cell);
   void join_cells(PointView points, float square, std::size_t a, std::size_t b);
 
   SpaceCells cells_;
