@@ -70,14 +70,14 @@ Result<std::int64_t> write_lidar(const std::filesystem::path& file, const Drive&
   const RayCaster caster(terrain);
   SimulatedLidar lidar(terrain, caster, draw_lidar(settings, robot.lidar), motion,
                        robot.lidar.mount(), kDriveStartNs, settings.seed);
-  Network network(*pcap, robot.lidar, settings.faults.packet_loss, settings.seed);
+  Ethernet ethernet(*pcap, robot.lidar, settings.faults.packet_loss, settings.seed);
   Observer observer(terrain, motion, truth);
   // The packet that begins the turn after the last one is there too, so that the last sweep ends.
   const double turns = std::max(std::round(settings.seconds * settings.rate_hz), 1.0);
   while (observer.turns() < turns) {
     lidar.advance();
     observer.watch(lidar);
-    network.send(lidar);
+    ethernet.send(lidar);
     const double done = std::min(lidar.turns(lidar.packet_end_ns()) / turns, 1.0);
     progress(static_cast<std::size_t>(1000 * done));
   }

@@ -19,18 +19,18 @@ std::int64_t delay_ns(Random& random) {
 
 }  // namespace
 
-Network::Network(PcapWriter& file, const LidarSettings& lidar, double lost_share,
-                 std::uint64_t seed)
+Ethernet::Ethernet(PcapWriter& file, const LidarSettings& lidar, double lost_share,
+                   std::uint64_t seed)
     : file_(file), lidar_(lidar), lost_share_(lost_share), random_(seed, 0x317E) {}
 
-void Network::send(const SimulatedLidar& lidar) {
+void Ethernet::send(const SimulatedLidar& lidar) {
   const auto sent = lidar.packet_end_ns();
   if (!random_.chance(lost_share_)) write(sent, lidar_.port, lidar.data_packet());
   if (++packets_ % kDataPacketsPerPosition != 0) return;
   write(sent + 20'000, lidar_.position_port, lidar.position_packet());
 }
 
-void Network::write(std::int64_t sent_ns, int port, std::span<const std::uint8_t> payload) {
+void Ethernet::write(std::int64_t sent_ns, int port, std::span<const std::uint8_t> payload) {
   arrival_ns_ = std::max(arrival_ns_ + 1000, sent_ns + delay_ns(random_));
   const auto number = static_cast<std::uint16_t>(port);
   file_.write({arrival_ns_, kSensorAddress, number, number, payload});

@@ -20,10 +20,10 @@ namespace scree {
 /// The lidar's datagrams as the host receives them: a moment after they were sent, now and then a
 /// few milliseconds, never out of order; some get lost. Every fifth data packet is followed by a
 /// position packet.
-class Network {
+class Ethernet {
 public:
   /// Keeps a reference to the file.
-  Network(PcapWriter& file, const LidarSettings& lidar, double lost_share, std::uint64_t seed);
+  Ethernet(PcapWriter& file, const LidarSettings& lidar, double lost_share, std::uint64_t seed);
   void send(const SimulatedLidar& lidar);
 
 private:
