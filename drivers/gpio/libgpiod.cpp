@@ -8,14 +8,15 @@
 #include <filesystem>
 
 namespace scree::gpio {
-namespace {
-
-constexpr const char* kConsumer = "scree";
 
 struct CloseChip {
   void operator()(gpiod_chip* chip) const { gpiod_chip_close(chip); }
 };
 using Chip = std::unique_ptr<gpiod_chip, CloseChip>;
+
+namespace {
+
+constexpr const char* kConsumer = "scree";
 
 std::optional<unsigned> number_of(const std::string& line) {
   unsigned number = 0;
@@ -102,8 +103,6 @@ std::optional<std::int64_t> read_edge(HeldLine& line) {
 
 #else  // version 2
 
-namespace {
-
 template <class T, void (*kFree)(T*)>
 struct Free {
   void operator()(T* object) const { kFree(object); }
@@ -117,6 +116,8 @@ using LineConfig = Owned<gpiod_line_config, gpiod_line_config_free>;
 using RequestConfig = Owned<gpiod_request_config, gpiod_request_config_free>;
 using Request = Owned<gpiod_line_request, gpiod_line_request_release>;
 using Events = Owned<gpiod_edge_event_buffer, gpiod_edge_event_buffer_free>;
+
+namespace {
 
 /// By path, by name, else by label.
 Chip open_chip(const std::string& name) {

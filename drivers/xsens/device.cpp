@@ -3,10 +3,10 @@
 #include <limits>
 #include <utility>
 
+#include "scree/core/nanoseconds.hpp"
+
 namespace scree::xsens {
 namespace {
-
-constexpr std::int64_t kSecond = 1'000'000'000;
 
 /// Between attempts to open a port that has gone ...
 constexpr std::int64_t kReopenAfter = kSecond / 2;

@@ -5,12 +5,11 @@
 #include <numeric>
 #include <utility>
 
+#include "scree/core/nanoseconds.hpp"
 #include "scree/drivers/xsens/orientation.hpp"
 
 namespace scree::xsens {
 namespace {
-
-constexpr std::int64_t kSecond = 1'000'000'000;
 
 /// Messages this much older than the one before them were overtaken on the way (a capture may have
 /// been cut together); older ones come from a device that started over.

@@ -4,10 +4,11 @@
 #include <chrono>
 #include <cmath>
 
+#include "scree/core/nanoseconds.hpp"
+
 namespace scree::xsens {
 namespace {
 
-constexpr std::int64_t kSecond = 1'000'000'000;
 constexpr std::int64_t kDay = 86'400 * kSecond;
 
 /// After this long without the better device time a worse one is taken up.

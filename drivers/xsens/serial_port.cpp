@@ -98,7 +98,7 @@ Result<void> SerialPort::set_baud(int baud) {
 SerialPort::Reading SerialPort::receive(std::span<std::uint8_t> buffer, ReceivedBytes& received) {
   ssize_t size = -1;
   do {
-    size = read(port_.get(), buffer.data(), buffer.size());
+    size = ::read(port_.get(), buffer.data(), buffer.size());
   } while (size < 0 && errno == EINTR);
   if (size > 0) {
     received = {buffer.first(static_cast<std::size_t>(size)), now_ns()};

@@ -3,10 +3,10 @@
 #include <limits>
 #include <utility>
 
+#include "scree/core/nanoseconds.hpp"
+
 namespace scree::xsens {
 namespace {
-
-constexpr std::int64_t kMillisecond = 1'000'000;
 
 struct BaudCode {
   int baud;

@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <utility>
 
+#include "scree/core/nanoseconds.hpp"
+
 namespace scree {
 namespace {
 
-constexpr std::int64_t kSecond = 1'000'000'000;
 constexpr double kSlow = 0.90, kSlowNoMore = 0.95;
 
 static_assert(static_cast<int>(ClockState::unsynchronised) == sensor_health_t::UNSYNCHRONISED &&

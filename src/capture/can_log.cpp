@@ -7,6 +7,8 @@
 #include <limits>
 #include <numeric>
 
+#include "scree/core/nanoseconds.hpp"
+
 namespace scree {
 namespace {
 
@@ -151,7 +153,6 @@ Result<CanLogWriter> CanLogWriter::create(const std::filesystem::path& file) {
 }
 
 void CanLogWriter::write(const CanFrame& frame, std::string_view interface) {
-  constexpr std::int64_t kSecond = 1'000'000'000;
   fmt::memory_buffer line;
   const auto out = std::back_inserter(line);
   fmt::format_to(out, "({:010}.{:06}) {} ", frame.t_ns / kSecond, frame.t_ns % kSecond / 1000,

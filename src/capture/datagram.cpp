@@ -12,7 +12,6 @@ using Bytes = std::span<const std::uint8_t>;
 
 constexpr std::uint16_t kEtherIpv4 = 0x0800;
 constexpr std::uint8_t kProtocolUdp = 17;
-constexpr std::size_t kUdpHeader = 8;
 
 /// A number in network byte order. @pre offset + 2 <= bytes.size()
 std::uint16_t network_u16(Bytes bytes, std::size_t offset) {

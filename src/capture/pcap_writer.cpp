@@ -9,7 +9,7 @@
 namespace scree {
 namespace {
 
-constexpr std::size_t kEthernetHeader = 14, kIpHeader = 20, kUdpHeader = 8;
+constexpr std::size_t kEthernetHeader = 14, kIpHeader = 20;
 constexpr std::size_t kHeaders = kEthernetHeader + kIpHeader + kUdpHeader;
 constexpr int kSnapLength = 262144;
 

@@ -9,7 +9,7 @@
 namespace scree {
 namespace {
 
-constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+constexpr float kUnseen = std::numeric_limits<float>::quiet_NaN();
 constexpr std::size_t kBorder = 2;  // empty cells all around, so that every cell has neighbours
 
 }  // namespace
@@ -112,7 +112,7 @@ float GroundSurface::blurred(std::size_t cell) const {
       height += w * z;
     }
   }
-  return weight > 0 ? height / weight : kUnknown;
+  return weight > 0 ? height / weight : kUnseen;
 }
 
 void GroundSurface::find_smooth_cells(float max_slope) {
@@ -139,7 +139,7 @@ float GroundSurface::rise(std::size_t cell, std::size_t along, std::size_t acros
     weight += w;
     rise += w * step;
   }
-  return weight > 0 ? rise / weight : kUnknown;
+  return weight > 0 ? rise / weight : kUnseen;
 }
 
 void GroundSurface::find_patches(float max_slope) {

@@ -4,10 +4,10 @@
 #include <array>
 #include <cstdlib>
 
+#include "scree/core/nanoseconds.hpp"
+
 namespace scree {
 namespace {
-
-constexpr std::int64_t kMillisecond = 1'000'000, kSecond = 1'000'000'000;
 
 /// How far the clocks may run apart in a time: 200 ppm.
 constexpr std::int64_t drift(std::int64_t elapsed_ns) {

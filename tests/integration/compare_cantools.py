@@ -25,7 +25,7 @@ except ImportError as missing:
     print(f"skipped: {missing}; see tests/requirements.txt")
     sys.exit(SKIPPED)
 
-LAYOUTS, FRAMES = 1200, 6
+LAYOUTS, FRAMES = 400, 6
 SIZES = [1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64]
 EXTENDED = 0x80000000
 

@@ -9,12 +9,12 @@
 namespace scree::cli {
 namespace {
 
-struct Options {
+struct ConfigOptions {
   std::string file = "/etc/scree/scree.toml";
   bool defaults = false, only_set = false;
 };
 
-void print_config(const Options& options) {
+void print_config(const ConfigOptions& options) {
   const Configuration configuration =
       options.defaults ? Configuration() : value_or_fail(read_configuration(options.file));
   fmt::print("{}", effective_toml(configuration, options.only_set));
@@ -23,7 +23,7 @@ void print_config(const Options& options) {
 }  // namespace
 
 void add_config(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ConfigOptions>();
   CLI::App& config = *app.add_subcommand(
       "config", "The configuration that takes effect, and where each value comes from, as TOML");
   CLI::Option* const file =

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct DetectOptions {
   fs::path input, config, out, stages;
 };
 
@@ -67,11 +67,11 @@ void warn_of_losses(const StageCounts& counts, std::string_view what) {
 }
 
 /// Where relative names of a configuration are looked for.
-fs::path settings_folder(const Options& options) {
+fs::path settings_folder(const DetectOptions& options) {
   return settings_file(options.input, options.config).value_or(fs::path()).parent_path();
 }
 
-void detect_in_cloud(const Options& options) {
+void detect_in_cloud(const DetectOptions& options) {
   const Settings all = capture_settings(options.input, options.config);
   const auto cloud = read_pcd(options.input);
   if (!cloud) throw Failure(cloud.error().message);
@@ -92,7 +92,7 @@ void detect_in_cloud(const Options& options) {
   fmt::print(writer.other_output(), "{}\n", chain(detector->counts()));
 }
 
-void detect_in_capture(const Options& options) {
+void detect_in_capture(const DetectOptions& options) {
   const Settings settings = capture_settings(options.input, options.config);
   LidarCapture capture(options.input, settings);
   auto pipeline = Pipeline::make(settings, settings_folder(options));
@@ -132,7 +132,7 @@ void detect_in_capture(const Options& options) {
 void add_detect(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("detect", "Obstacles in a capture or a point cloud, one line a list");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<DetectOptions>();
   command
       ->add_option("INPUT", options->input,
                    "capture (folder, .pcap, .pcapng, LCM log) or cloud (.pcd)")

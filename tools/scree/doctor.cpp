@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct DoctorOptions {
   std::string config = "/etc/scree/scree.toml";
   double seconds = 3;
 };
@@ -33,7 +33,7 @@ std::string named(const Process& process) {
 
 class Doctor {
 public:
-  explicit Doctor(const Options& options) : options_(options) {}
+  explicit Doctor(const DoctorOptions& options) : options_(options) {}
 
   /// Looks at everything, and prints a line for each. @return how many are wrong
   int examine() {
@@ -202,14 +202,14 @@ private:
     add(judge_clock(state, clock.maxerror));
   }
 
-  Options options_;
+  DoctorOptions options_;
   Settings settings_;
   std::optional<PortOwner> owner_;  // of the lidar's port, before it is listened on
   std::optional<Process> screed_;   // the same, where it is screed
   std::vector<Finding> findings_;
 };
 
-void examine(const Options& options) {
+void examine(const DoctorOptions& options) {
   Doctor doctor(options);
   const int wrong = doctor.examine();
   doctor.print();
@@ -222,7 +222,7 @@ void examine(const Options& options) {
 void add_doctor(CLI::App& app) {
   CLI::App* const command = app.add_subcommand(
       "doctor", "What to do when nothing comes: sensors, network, rights, clock");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<DoctorOptions>();
   command->add_option("--config", options->config, "configuration of the robot")
       ->type_name("FILE")
       ->capture_default_str();

@@ -8,12 +8,12 @@
 namespace scree::cli {
 namespace {
 
-struct Options {
+struct EvaluateOptions {
   std::vector<std::string> files;
   bool as_json = false;
 };
 
-void evaluate(const Options& options) {
+void evaluate(const EvaluateOptions& options) {
   Scorer scorer;
   for (std::size_t i = 0; i + 1 < options.files.size(); i += 2) {
     const auto truth = read_truth(options.files[i]);
@@ -30,7 +30,7 @@ void evaluate(const Options& options) {
 void add_evaluate(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "evaluate", "Score detections against truth; several pairs of files are summed up");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<EvaluateOptions>();
   command
       ->add_option("FILES", options->files,
                    "truth.json, then the lists of `scree detect`; and so on")

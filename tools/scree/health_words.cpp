@@ -4,6 +4,8 @@
 
 #include <array>
 
+#include "scree/core/nanoseconds.hpp"
+
 namespace scree::cli {
 namespace {
 
@@ -20,7 +22,6 @@ void remove_zeros(Counts& counts) {
 }  // namespace
 
 std::string time_of_day(std::int64_t stamp_ns) {
-  constexpr std::int64_t kSecond = 1'000'000'000;
   const std::int64_t in_day = (stamp_ns % (86400 * kSecond) + 86400 * kSecond) % (86400 * kSecond);
   const std::int64_t seconds = in_day / kSecond;
   return fmt::format("{:02}:{:02}:{:02}.{:03}", seconds / 3600, seconds / 60 % 60, seconds % 60,

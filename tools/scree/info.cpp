@@ -21,7 +21,7 @@ using Json = nlohmann::ordered_json;
 using velodyne::LidarCounters;
 using velodyne::LidarStream;
 
-struct Options {
+struct InfoOptions {
   std::string capture, config;
   bool json = false;
 };
@@ -192,7 +192,7 @@ void print_table(const Json& info) {
   }
 }
 
-void inform(const Options& options) {
+void inform(const InfoOptions& options) {
   const Settings settings = capture_settings(options.capture, options.config);
   LidarCapture capture(options.capture, settings);
   Turns turns;
@@ -215,7 +215,7 @@ void inform(const Options& options) {
 
 void add_info(CLI::App& app) {
   CLI::App* const command = app.add_subcommand("info", "What a capture holds");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<InfoOptions>();
   command->add_option("capture", options->capture, "Folder, .pcap, .pcapng or LCM log")->required();
   command->add_flag("--json", options->json, "As JSON");
   command->add_option("--config", options->config,

@@ -19,7 +19,7 @@
 namespace scree::cli {
 namespace {
 
-struct Options {
+struct PictureOptions {
   std::string input, detections, out, config;
 };
 
@@ -46,7 +46,7 @@ private:
 };
 
 /// A sweep of the capture as the detector gets it.
-Ground ground_of_capture(const Options& options) {
+Ground ground_of_capture(const PictureOptions& options) {
   const Settings settings = capture_settings(options.input, options.config);
   const auto config = settings_file(options.input, options.config);
   auto pipeline = Pipeline::make(settings, config ? config->parent_path() : "");
@@ -66,7 +66,7 @@ Ground ground_of_capture(const Options& options) {
   return copy;
 }
 
-Ground ground_of_cloud(const Options& options) {
+Ground ground_of_cloud(const PictureOptions& options) {
   auto cloud = read_pcd(options.input);
   if (!cloud) throw Failure(cloud.error().message);
   return {std::move(*cloud), "one point cloud", 0};
@@ -92,7 +92,7 @@ const ObstacleList& list_of(const std::vector<ObstacleList>& lists, std::int64_t
   return found != lists.end() ? *found : lists.back();
 }
 
-void picture(const Options& options) {
+void picture(const PictureOptions& options) {
   const auto lists = read_detections(options.detections);
   if (lists.empty()) throw Failure(options.detections + " holds no obstacle list");
   const bool is_cloud = std::filesystem::path(options.input).extension() == ".pcd";
@@ -110,7 +110,7 @@ void add_picture(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "picture",
       "Draw the last whole sweep of a capture, or a cloud, with its obstacles from above");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PictureOptions>();
   command->add_option("input", options->input, "capture or .pcd file")
       ->required()
       ->type_name("INPUT");

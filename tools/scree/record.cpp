@@ -24,7 +24,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int kLookMs = 50;  // how often sensors that are missing, and the time, are looked after
 
-struct Options {
+struct RecordOptions {
   std::string folder, config = "/etc/scree/scree.toml";
   double seconds = 0;
 };
@@ -81,7 +81,7 @@ double run(const std::vector<Recorder*>& recorders, double longest, Report& repo
   }
 }
 
-void record(const Options& options) {
+void record(const RecordOptions& options) {
   const Settings settings = value_or_fail(load_settings(options.config));
   const fs::path config = options.config, folder = options.folder;
   value_or_fail(encoder::with_dbc(settings.encoder, config.parent_path()));
@@ -110,7 +110,7 @@ void record(const Options& options) {
 void add_record(CLI::App& app) {
   CLI::App* const command =
       app.add_subcommand("record", "Record the live sensors into a capture, instead of screed");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<RecordOptions>();
   command->add_option("folder", options->folder, "new folder of the capture")
       ->required()
       ->type_name("DIR");

@@ -15,6 +15,7 @@
 #include "interruption.hpp"
 #include "lidar_capture.hpp"
 #include "progress.hpp"
+#include "scree/core/nanoseconds.hpp"
 #include "scree/drivers/encoder/can_sender.hpp"
 #include "time_range.hpp"
 #include "udp_target.hpp"
@@ -22,11 +23,10 @@
 namespace scree::cli {
 namespace {
 
-constexpr std::int64_t kSecond = 1'000'000'000;
 // Between the end of a capture and its next turn: as long as between two data packets.
 constexpr std::int64_t kTurnPause = 1'327'000;
 
-struct Options {
+struct ReplayOptions {
   std::string capture, config, address = "127.0.0.1", rate = "1", serial, can;
   int position_port = 0;
   TimeRange range;
@@ -58,11 +58,11 @@ double rate_of(const std::string& text) {
   return rate;
 }
 
-UdpTarget target(const Options& options, int port) {
+UdpTarget target(const ReplayOptions& options, int port) {
   return {options.address.substr(0, options.address.find(':')), port};
 }
 
-int data_port(const Options& options, int otherwise) {
+int data_port(const ReplayOptions& options, int otherwise) {
   const std::size_t colon = options.address.find(':');
   if (colon == std::string::npos) return otherwise;
   int port = 0;
@@ -98,7 +98,7 @@ struct CanTarget {
 /// Where a capture goes, and in which time.
 class Replay {
 public:
-  Replay(const Options& options, const LidarSettings& lidar)
+  Replay(const ReplayOptions& options, const LidarSettings& lidar)
       : rate_(rate_of(options.rate)),
         range_(options.range),
         captured_data_(lidar.port),
@@ -224,7 +224,7 @@ private:
 };
 
 /// Says what the capture has and nobody gets.
-void say_what_is_left_out(const CaptureEvents& events, const Options& options) {
+void say_what_is_left_out(const CaptureEvents& events, const ReplayOptions& options) {
   if (events.has_imu() && options.serial.empty()) {
     fmt::print(stderr, "scree: the IMU is not played: --serial names a port for it\n");
   }
@@ -233,7 +233,7 @@ void say_what_is_left_out(const CaptureEvents& events, const Options& options) {
   }
 }
 
-std::string nothing_sent(const Options& options, const Settings& settings) {
+std::string nothing_sent(const ReplayOptions& options, const Settings& settings) {
   const auto [first_ns, last_ns] = span_of(options.capture, settings);
   if (options.range.begin_ns() > last_ns - first_ns) {
     return options.range.nothing_in(options.capture, last_ns - first_ns);
@@ -242,7 +242,7 @@ std::string nothing_sent(const Options& options, const Settings& settings) {
                      settings.lidar.port);
 }
 
-void replay(const Options& options) {
+void replay(const ReplayOptions& options) {
   options.range.check();
   const Settings settings = capture_settings(options.capture, options.config);
   stop_on_signals();
@@ -271,7 +271,7 @@ void replay(const Options& options) {
 void add_replay(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("replay", "Play a capture to a running daemon: UDP, serial, CAN");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ReplayOptions>();
   command->add_option("capture", options->capture, "capture to play")
       ->required()
       ->type_name("CAPTURE");

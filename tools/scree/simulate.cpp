@@ -11,7 +11,7 @@
 namespace scree::cli {
 namespace {
 
-struct Options {
+struct SimulateOptions {
   std::string folder, cloud, scene;
   CaptureSettings capture;
   CloudSettings points;
@@ -47,7 +47,7 @@ void add_gap(CLI::App& command, const char* name, const char* help, CLI::Option*
       ->check(CLI::Range(0.0, 3600.0));
 }
 
-void run(const CLI::App& command, const Options& options) {
+void run(const CLI::App& command, const SimulateOptions& options) {
   if (options.folder.empty() == options.cloud.empty()) {
     throw CLI::ValidationError("give either the folder of a capture or --cloud FILE.pcd");
   }
@@ -67,7 +67,7 @@ void run(const CLI::App& command, const Options& options) {
   if (!written) throw Failure(written.error().message);
 }
 
-void add_faults(CLI::App& command, Options& options, CLI::Option* cloud) {
+void add_faults(CLI::App& command, SimulateOptions& options, CLI::Option* cloud) {
   Faults& faults = options.capture.faults;
   const auto add_share = [&](const char* name, double& share, const char* help) {
     command.add_option(name, share, help)
@@ -91,7 +91,7 @@ void add_faults(CLI::App& command, Options& options, CLI::Option* cloud) {
 
 void add_simulate(CLI::App& app) {
   auto* command = app.add_subcommand("simulate", "writes a synthetic capture with its truth");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SimulateOptions>();
   auto* folder = command->add_option("DIR", options->folder, "folder of the capture");
   auto* cloud = command->add_option("--cloud", options->cloud,
                                     "write one reconstructed cloud instead, and FILE.truth.json");

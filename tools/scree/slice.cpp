@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct SliceOptions {
   fs::path capture, folder, config;
   TimeRange range;
 };
@@ -35,7 +35,7 @@ struct Slice {
 };
 
 /// The asked-for part. Throws Failure where no sensor says anything in it.
-Slice find_slice(const Options& options, const Settings& settings) {
+Slice find_slice(const SliceOptions& options, const Settings& settings) {
   CaptureEvents events(options.capture, settings);
   CaptureEvent event;
   std::optional<Slice> slice;
@@ -100,7 +100,7 @@ void copy_truth(const fs::path& source, const Slice& slice, const fs::path& file
   require(write_truth(file, truth));
 }
 
-void cut(const Options& options) {
+void cut(const SliceOptions& options) {
   options.range.check();
   const Settings settings = capture_settings(options.capture, options.config);
   const Slice slice = find_slice(options, settings);
@@ -127,7 +127,7 @@ void cut(const Options& options) {
 
 void add_slice(CLI::App& app) {
   CLI::App* const command = app.add_subcommand("slice", "Cut a part out of a capture");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<SliceOptions>();
   command->add_option("capture", options->capture, "capture to cut from")
       ->required()
       ->type_name("CAPTURE");

@@ -39,7 +39,7 @@ constexpr std::array<Study, 9> kStudies = {{
 /// Beyond the seeds of `scree train`, so that no study meets a terrain that weights came from.
 constexpr std::uint64_t kFirstSeed = 900'001;
 
-struct Options {
+struct StudyOptions {
   std::string name, config;
   std::string out;
   std::size_t seeds = 0, training = 40, points = CloudSettings().points;
@@ -55,7 +55,7 @@ std::string listing() {
   return text;
 }
 
-void run(const Options& options) {
+void run(const StudyOptions& options) {
   StudyTask task;
   task.out = options.out;
   task.settings.lidar = scene_lidar();
@@ -141,7 +141,7 @@ void write_picture(const StudyTask& task, const std::string& name, Drawing& draw
 void add_study(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "study", "Repeat an experiment of the paper on simulated terrain: a table and a picture");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<StudyOptions>();
   command->footer("Studies:" + listing());
   std::vector<std::string> names;
   names.reserve(kStudies.size());

@@ -10,6 +10,7 @@
 
 #define NCURSES_NOMACROS
 #include <curses.h>
+#undef OK  // which a health_t has too
 
 namespace scree::cli {
 namespace {

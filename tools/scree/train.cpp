@@ -16,7 +16,7 @@ namespace {
 /// Seeds of the three parts stand this far apart, so that no terrain is in two of them.
 constexpr std::uint64_t kPart = 100'000;
 
-struct Options {
+struct TrainOptions {
   Profile profile = Profile::cloud;
   InputForm counts = InputForm::log1p;
   std::string config, out;
@@ -50,7 +50,7 @@ struct Part {
 };
 
 Part make_part(const std::string& name, std::uint64_t number, std::size_t count,
-               const Options& options, const Settings& settings) {
+               const TrainOptions& options, const Settings& settings) {
   Part part{name, {options.seed + number * kPart, count}, {}};
   Progress progress("clusters for " + name, count);
   part.clusters = make_data_set(options.profile, settings, part.seeds, std::ref(progress));
@@ -80,7 +80,7 @@ std::string table_of(const Scores& scores) {
 
 /// Everything that the weights depend on, and what they reach. No date: the same command gives the
 /// same file.
-std::string provenance(const Options& options, const DetectSettings& detect,
+std::string provenance(const TrainOptions& options, const DetectSettings& detect,
                        const std::vector<Part>& parts, const TrainingResult& result,
                        const Scores& scores) {
   const std::string profile = name_in(kProfiles, options.profile);
@@ -110,7 +110,7 @@ std::string provenance(const Options& options, const DetectSettings& detect,
   return text;
 }
 
-void run(Options options) {
+void run(TrainOptions options) {
   Settings settings;
   settings.lidar = scene_lidar();
   if (!options.config.empty()) {
@@ -148,7 +148,7 @@ void run(Options options) {
 
 void add_train(CLI::App& app) {
   auto* command = app.add_subcommand("train", "trains the network on simulated terrain");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<TrainOptions>();
   command->add_option("--profile", options->profile, "cloud, map or sweep")
       ->transform(CLI::CheckedTransformer(kProfiles))
       ->default_str("cloud");

@@ -16,7 +16,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-struct Options {
+struct WatchOptions {
   LcmOptions lcm;
   bool json = false;
   int count = 0;
@@ -26,7 +26,7 @@ struct Options {
 /// Prints messages as they come, each at once, so that a pipe behind it sees them too.
 class Watcher {
 public:
-  explicit Watcher(const Options& options) : json_(options.json), pause_(options.every) {}
+  explicit Watcher(const WatchOptions& options) : json_(options.json), pause_(options.every) {}
 
   void take_list(const obstacle_list_t& message) {
     ++lists_;
@@ -75,7 +75,8 @@ int milliseconds_until(Clock::time_point end) {
   return static_cast<int>(std::clamp<std::int64_t>(left, 0, 1000));
 }
 
-std::string nothing_came(const Options& options, const Watcher& watcher, const std::string& url) {
+std::string nothing_came(const WatchOptions& options, const Watcher& watcher,
+                         const std::string& url) {
   char seconds[32];
   std::snprintf(seconds, sizeof seconds, "%g s", options.seconds);
   if (watcher.lists() > 0) {
@@ -89,7 +90,7 @@ std::string nothing_came(const Options& options, const Watcher& watcher, const s
          ": does screed run, and with the same lcm.url?";
 }
 
-void watch(const Options& options) {
+void watch(const WatchOptions& options) {
   const std::string url = options.lcm.url_of();
   Watcher watcher(options);
   const auto subscriber = Subscriber::open(
@@ -118,7 +119,7 @@ void watch(const Options& options) {
 
 void add_watch(CLI::App& app) {
   CLI::App* command = app.add_subcommand("watch", "Print obstacle lists and health as they come");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<WatchOptions>();
   options->lcm.add_to(*command);
   command->add_flag("--json", options->json, "the lists alone, one JSON object a line");
   command->add_option("--count", options->count, "end after this many lists")

@@ -11,7 +11,7 @@
 namespace scree {
 namespace {
 
-enum Stream : std::uint64_t { kPoints = 0xC10D, kDensity, kUnseen, kPasses };
+enum CloudStream : std::uint64_t { kPoints = 0xC10D, kDensity, kUnseen, kPasses };
 
 /// How many points each cell of the raster gets, relative to the others; row by row.
 class Density {

@@ -9,7 +9,7 @@
 namespace scree {
 namespace {
 
-enum Stream : std::uint64_t { kHoles = 201, kRocks, kSmooth, kSmall, kClose };
+enum FeatureStream : std::uint64_t { kHoles = 201, kRocks, kSmooth, kSmall, kClose };
 
 /// Shapes that keep their places to one another, about an origin of their own.
 struct Group {

@@ -9,15 +9,13 @@
 namespace scree {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 double smooth_step(double from, double to, double x) {
   const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
   return t * t * (3 - 2 * t);
 }
 
 double bell(double radius) {
-  const double c = std::cos(std::min(radius, 1.0) * kPi / 2);
+  const double c = std::cos(std::min(radius, 1.0) * std::numbers::pi / 2);
   return c * c;
 }
 
@@ -36,7 +34,7 @@ std::string_view name_of(ShapeKind kind) {
 }
 
 double Shape::outline(double angle) const {
-  const double turns = angle / (2 * kPi) + 1;  // atan2 gives -pi..pi
+  const double turns = angle / (2 * std::numbers::pi) + 1;  // atan2 gives -pi..pi
   const double place = (turns - std::floor(turns)) * kDirections;
   const auto index = static_cast<std::size_t>(place);
   return std::lerp(outline_[index % kDirections], outline_[(index + 1) % kDirections],
@@ -134,7 +132,7 @@ Footprint Shape::footprint() const {
     }
   } else {
     for (int i = 0; i < kCorners; ++i) {
-      const double angle = 2 * kPi * i / kCorners;
+      const double angle = 2 * std::numbers::pi * i / kCorners;
       const Eigen::Vector2d unit(std::cos(angle), std::sin(angle));
       corners.emplace_back(outline(angle) * unit.cwiseProduct(semi_axes_));
     }

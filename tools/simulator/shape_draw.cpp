@@ -8,8 +8,6 @@
 namespace scree {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 /// How much of a long shape's half length one end takes at most.
 constexpr double kLongestEnd = 0.6;
 constexpr double kLongestRock = 1.3;  ///< half of it, metres
@@ -20,7 +18,7 @@ constexpr double kWidestHole = 1.3;   ///< half of it, metres
 Shape Shape::draw(ShapeKind kind, Random& random, std::optional<SizeRange> size) {
   Shape shape;
   shape.kind_ = kind;
-  const double yaw = random.uniform(-kPi, kPi);
+  const double yaw = random.uniform(-std::numbers::pi, std::numbers::pi);
   shape.cos_yaw_ = std::cos(yaw);
   shape.sin_yaw_ = std::sin(yaw);
   shape.draw_size(random, size);
@@ -145,11 +143,11 @@ void Shape::draw_outline(Random& random) {
   std::array<Wave, 4> waves{};
   double total = 0;
   for (Wave& wave : waves) {
-    wave = {random.uniform(), random.uniform(0, 2 * kPi)};
+    wave = {random.uniform(), random.uniform(0, 2 * std::numbers::pi)};
     total += wave.amplitude;
   }
   for (std::size_t i = 0; i < kDirections; ++i) {
-    const double angle = 2 * kPi * static_cast<double>(i) / kDirections;
+    const double angle = 2 * std::numbers::pi * static_cast<double>(i) / kDirections;
     outline_[i] = 1;
     for (std::size_t k = 0; k < waves.size(); ++k) {
       const double turns = static_cast<double>(k + 2);

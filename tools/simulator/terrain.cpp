@@ -12,7 +12,7 @@ namespace scree {
 namespace {
 
 /// Each part of a terrain draws from a stream of its own, so that changing one leaves the others.
-enum Stream : std::uint64_t {
+enum TerrainStream : std::uint64_t {
   kGround = 1,
   kRoughness = 100,
   kFeatures = 200,

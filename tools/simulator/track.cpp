@@ -13,7 +13,8 @@ namespace {
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kStep = static_cast<double>(kTrackStepNs) * 1e-9;
 
-double smooth(double t) {
+/// With no jerk at its ends.
+double smoother(double t) {
   const double x = std::clamp(t, 0.0, 1.0);
   return x * x * x * (x * (x * 6 - 15) + 10);
 }
@@ -61,11 +62,11 @@ public:
     constexpr double kStopped = 1.0;
     const double wanted = std::clamp(mean_ * (1 + variation_ * waves_(t)), 0.3, 2.0);
     const double away = std::abs(t - stop_) - kStopped / 2;
-    const double going = std::min(smooth((t - stands_) / drives_off_), smooth(away / kBraking));
+    const double going = std::min(smoother((t - stands_) / drives_off_), smoother(away / kBraking));
     if (t < backs_ - kBraking || t > forwards_ + kBraking) return wanted * going;
     const double turned = std::min(std::abs(t - backs_), std::abs(t - forwards_));
     const double direction = t > backs_ && t < forwards_ ? -0.6 : 1;
-    return direction * wanted * std::min(going, smooth(turned / kBraking));
+    return direction * wanted * std::min(going, smoother(turned / kBraking));
   }
 
 private:
@@ -97,7 +98,7 @@ std::vector<TrackPoint> draw_track(const TrackSettings& settings, std::uint64_t 
     double wanted = sharpest * bends(driven);
     if (here.position.norm() > kArena) {
       const double home = std::atan2(-here.position.y(), -here.position.x());
-      wanted += 0.35 * std::sin(home - here.yaw) * smooth((here.position.norm() - kArena) / 3);
+      wanted += 0.35 * std::sin(home - here.yaw) * smoother((here.position.norm() - kArena) / 3);
       if (std::cos(home - here.yaw) < 0) wanted = std::copysign(0.4, std::sin(home - here.yaw));
     }
     const double most = kMostTurning / std::max(std::abs(here.speed), 0.3);

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
 
 namespace scree {
+
+inline constexpr std::size_t kUdpHeader = 8;  ///< bytes (RFC 768)
 
 /// A UDP datagram of a capture. The payload lies in the reader's memory until its next read.
 struct Datagram {

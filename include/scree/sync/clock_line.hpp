@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "scree/core/nanoseconds.hpp"
+
 namespace scree {
 
 /// A packet's device time, which does not wrap, and by how much its arrival on the host's clock
@@ -14,7 +16,6 @@ struct ClockSample {
 
 /// What a skew makes of a time: `elapsed_ns * ppb / 1e9`. @pre |ppb| <= 1e6
 constexpr std::int64_t gained_ns(std::int64_t elapsed_ns, std::int64_t ppb) {
-  constexpr std::int64_t kSecond = 1'000'000'000;
   return elapsed_ns / kSecond * ppb + elapsed_ns % kSecond * ppb / kSecond;
 }
 

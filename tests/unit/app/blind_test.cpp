@@ -5,14 +5,13 @@
 #include <algorithm>
 
 #include "app/health_watch.hpp"
+#include "scree/core/nanoseconds.hpp"
 
 namespace scree {
 namespace {
 
 using ::testing::AnyOf;
 using ::testing::HasSubstr;
-
-constexpr std::int64_t kMillisecond = 1'000'000;
 
 /// A robot whose lidar turns evenly, looked at every 20 ms as the daemon does. What is no longer
 /// `true` has stopped.

@@ -10,8 +10,6 @@
 namespace scree {
 namespace {
 
-using std::chrono::milliseconds;
-
 struct Item {
   std::uint64_t number = 0;
 };
@@ -46,7 +44,7 @@ TEST(HandOver, WhenFullNothingIsFreeUntilOneIsGivenBack) {
 TEST(HandOver, AWakeUpBeforeTheWaitIsNotLost) {
   HandOver<Item> ring(1, make_item);
   ring.wake();
-  ring.wait(milliseconds(60'000));
+  ring.wait(std::chrono::milliseconds(60'000));
 }
 
 TEST(HandOver, EverythingHandedOverArrivesOnceAndInOrder) {
@@ -75,7 +73,7 @@ TEST(HandOver, EverythingHandedOverArrivesOnceAndInOrder) {
   for (std::uint64_t expected = 1; expected <= kItems;) {
     std::unique_ptr<Item>* item = ring.take_full();
     if (item == nullptr) {
-      ring.wait(milliseconds(60'000));
+      ring.wait(std::chrono::milliseconds(60'000));
       continue;
     }
     ASSERT_EQ((*item)->number, expected++);

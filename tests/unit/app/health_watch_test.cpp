@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "scree/core/nanoseconds.hpp"
+
 namespace scree {
 namespace {
 
@@ -11,8 +13,6 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
-
-constexpr std::int64_t kMillisecond = 1'000'000;
 
 class HealthWatchTest : public ::testing::Test {
 protected:

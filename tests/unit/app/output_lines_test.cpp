@@ -5,13 +5,14 @@
 
 #include <vector>
 
+#include "scree/core/nanoseconds.hpp"
+
 namespace scree {
 namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-constexpr std::int64_t kMs = 1'000'000;
 constexpr StopSettings kZone{.length = 2, .width = 1, .hold = 0.5};
 
 /// A line that remembers what it was set to.
@@ -43,19 +44,19 @@ TEST(OutputLines, StopsForBlindnessAndForAnObstacleAtOnceAndHoldsBoth) {
   OutputLines lines(kZone, {stop.setter(), {}, {}});
   EXPECT_TRUE(lines.is_stopped(0));
   lines.set_blind(true, 0);
-  lines.set_blind(false, 10 * kMs);
-  lines.see(list_with_rock_at(9), 500 * kMs);
+  lines.set_blind(false, 10 * kMillisecond);
+  lines.see(list_with_rock_at(9), 500 * kMillisecond);
   EXPECT_THAT(stop.levels, ElementsAre(true));
-  lines.set_blind(false, 510 * kMs);
+  lines.set_blind(false, 510 * kMillisecond);
   EXPECT_THAT(stop.levels, ElementsAre(true, false));
-  lines.see(list_with_rock_at(1), 600 * kMs);
+  lines.see(list_with_rock_at(1), 600 * kMillisecond);
   EXPECT_THAT(stop.levels, ElementsAre(true, false, true)) << "without waiting for a look";
-  lines.see(list_with_rock_at(9), 700 * kMs);
-  lines.set_blind(false, 1199 * kMs);
+  lines.see(list_with_rock_at(9), 700 * kMillisecond);
+  lines.set_blind(false, 1199 * kMillisecond);
   EXPECT_THAT(stop.levels, ElementsAre(true, false, true));
-  lines.set_blind(false, 1200 * kMs);
+  lines.set_blind(false, 1200 * kMillisecond);
   EXPECT_THAT(stop.levels, ElementsAre(true, false, true, false));
-  lines.set_blind(true, 1300 * kMs);
+  lines.set_blind(true, 1300 * kMillisecond);
   EXPECT_THAT(stop.levels, ElementsAre(true, false, true, false, true));
   EXPECT_EQ(stop.tries, 5) << "it is not set to the level that it has";
 }
@@ -77,13 +78,13 @@ TEST(OutputLines, ALineThatCannotBeSetIsSaidAndTriedUntilItCan) {
   EXPECT_THAT(lines.problem(), HasSubstr("the heartbeat line cannot be set"));
   stop.is_gone = true;
   lines.set_blind(false, 0);
-  lines.set_blind(false, 600 * kMs);
+  lines.set_blind(false, 600 * kMillisecond);
   EXPECT_THAT(lines.problem(), HasSubstr("the stop line cannot be set"));
-  lines.set_blind(true, 700 * kMs);
-  lines.set_blind(true, 800 * kMs);
+  lines.set_blind(true, 700 * kMillisecond);
+  lines.set_blind(true, 800 * kMillisecond);
   EXPECT_EQ(stop.tries, 4);
   stop.is_gone = heartbeat.is_gone = false;
-  lines.set_blind(true, 900 * kMs);
+  lines.set_blind(true, 900 * kMillisecond);
   lines.beat();
   EXPECT_EQ(lines.problem(), "");
   EXPECT_THAT(stop.levels, ElementsAre(true, true));
@@ -94,7 +95,7 @@ TEST(OutputLines, WithoutLinesTheDecisionIsStillMade) {
   lines.set_blind(false, 0);
   lines.see(list_with_rock_at(9), 0);
   lines.beat();
-  EXPECT_FALSE(lines.is_stopped(501 * kMs));
+  EXPECT_FALSE(lines.is_stopped(501 * kMillisecond));
   EXPECT_EQ(lines.problem(), "");
 }
 

@@ -3,21 +3,21 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "scree/core/nanoseconds.hpp"
+
 namespace scree {
 namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-constexpr std::int64_t kMs = 1'000'000;
-
 class SensorWatchTest : public ::testing::Test {
 protected:
   /// Looks every 50 ms while so many messages come and get lost each time; the log of the time.
   std::string run(std::int64_t milliseconds, std::uint64_t messages, std::uint64_t lost = 0) {
     std::string log;
-    for (std::int64_t end = now_ + milliseconds * kMs; now_ < end;) {
-      now_ += 50 * kMs;
+    for (std::int64_t end = now_ + milliseconds * kMillisecond; now_ < end;) {
+      now_ += 50 * kMillisecond;
       status_.messages += messages;
       status_.lost += lost;
       if (messages > 0) status_.last_heard_ns = status_.last_message_ns = now_;
@@ -33,7 +33,7 @@ protected:
     return log;
   }
 
-  std::int64_t now_ = 7'000 * kMs;
+  std::int64_t now_ = 7'000 * kMillisecond;
   SensorStatus status_;
   sensor_health_t health_{};
   SensorWatch watch_{{"things from X", "look at X"}, now_};

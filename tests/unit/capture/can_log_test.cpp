@@ -28,7 +28,7 @@ CanLineRefusal refusal_of(std::string_view line) {
   return parse_can_line(line, frame, interface);
 }
 
-std::vector<int> bytes_of(const CanFrame& frame) {
+std::vector<int> data_of(const CanFrame& frame) {
   return {frame.payload().begin(), frame.payload().end()};
 }
 
@@ -41,9 +41,9 @@ TEST(CanLine, ReadsAClassicFrame) {
   EXPECT_EQ(frame.t_ns, 1'598'601'600'123'456'000);
   EXPECT_EQ(frame.id, 0x1A0U);
   EXPECT_FALSE(frame.is_extended || frame.is_error || frame.is_remote);
-  EXPECT_THAT(bytes_of(frame), ElementsAre(0, 0x11, 0x22, 0x33, 0xAA, 0xBB, 0xCC, 0xDD));
-  EXPECT_THAT(bytes_of(frame_of("(1.0) can0 7FF#")), ElementsAre());
-  EXPECT_THAT(bytes_of(frame_of("(1.0) can0 7FF#11.22.33")), ElementsAre(0x11, 0x22, 0x33));
+  EXPECT_THAT(data_of(frame), ElementsAre(0, 0x11, 0x22, 0x33, 0xAA, 0xBB, 0xCC, 0xDD));
+  EXPECT_THAT(data_of(frame_of("(1.0) can0 7FF#")), ElementsAre());
+  EXPECT_THAT(data_of(frame_of("(1.0) can0 7FF#11.22.33")), ElementsAre(0x11, 0x22, 0x33));
   EXPECT_EQ(frame_of("(1.0) can0 123#1122334455667788_9").size, 8);
 }
 
@@ -64,7 +64,7 @@ TEST(CanLine, ReadsErrorAndRemoteFrames) {
   const CanFrame remote = frame_of("(1.0) can0 1A0#R4");
   EXPECT_TRUE(remote.is_remote);
   EXPECT_EQ(remote.size, 4);
-  EXPECT_THAT(bytes_of(remote), ElementsAre());
+  EXPECT_THAT(data_of(remote), ElementsAre());
   EXPECT_TRUE(frame_of("(1.0) can0 1A0#R").is_remote);
 }
 
@@ -73,7 +73,7 @@ TEST(CanLine, ReadsFdFrames) {
   for (int i = 0; i < 64; ++i) line += "5A";
   EXPECT_EQ(frame_of(line).size, 64);
   EXPECT_EQ(frame_of(line).data[63], 0x5A);
-  EXPECT_THAT(bytes_of(frame_of("(1.0) can0 1A0##0")), ElementsAre());
+  EXPECT_THAT(data_of(frame_of("(1.0) can0 1A0##0")), ElementsAre());
   EXPECT_EQ(refusal_of(line + "5A"), CanLineRefusal::data);
 }
 
@@ -182,7 +182,7 @@ TEST(CanLogWriter, WritesAsCandumpAndReadsBack) {
   ASSERT_TRUE(writer);
   for (const CanFrame& frame : frames) writer->write(frame, "can0");
   ASSERT_TRUE(writer->close());
-  EXPECT_EQ(scree::bytes_of(folder / "can.log"),
+  EXPECT_EQ(bytes_of(folder / "can.log"),
             "(1598601600.000012) can0 0C8#0ABC00\n(0000000000.000000) can0 7FF#R2\n"
             "(0000000000.000000) can0 20000040#0000000000000000\n"
             "(0000000000.000000) can0 000001A0#\n"

@@ -37,14 +37,14 @@ void write_log(const std::filesystem::path& file, int count) {
   lcm_eventlog_destroy(log);
 }
 
-struct Read {
+struct ReadLog {
   std::vector<LcmEvent> events;
   std::vector<std::vector<std::uint8_t>> messages;
   std::string broken_off;
 };
 
-Read read_all(const std::filesystem::path& file) {
-  Read read;
+ReadLog read_log(const std::filesystem::path& file) {
+  ReadLog read;
   auto reader = LcmLogReader::open(file);
   EXPECT_TRUE(reader) << reader.error().message;
   LcmEvent event;
@@ -59,7 +59,7 @@ Read read_all(const std::filesystem::path& file) {
 TEST(LcmLog, ReadsWhatLcmWrites) {
   const TemporaryFolder folder;
   write_log(folder / "log", 5);
-  const Read read = read_all(folder / "log");
+  const ReadLog read = read_log(folder / "log");
   ASSERT_EQ(read.events.size(), 5U);
   EXPECT_EQ(read.events[4].arrival_ns, (kBeginUs + 4) * 1000);
   EXPECT_EQ(read.events[4].channel, "CHANNEL_4");
@@ -82,7 +82,7 @@ TEST(LcmLog, ALogCutInTheMiddleGivesEverythingBefore) {
   const TemporaryFolder folder;
   write_log(folder / "whole", 5);
   const std::string whole = bytes_of(folder / "whole");
-  const Read read = read_all(folder.write("cut", whole.substr(0, whole.size() - 10)));
+  const ReadLog read = read_log(folder.write("cut", whole.substr(0, whole.size() - 10)));
   EXPECT_EQ(read.events.size(), 4U);
   // The last event has a header of 28 bytes, a channel of 9 and 104 bytes.
   EXPECT_THAT(read.broken_off, AllOf(HasSubstr("cut: "), HasSubstr("131 bytes belong to no")));
@@ -94,7 +94,7 @@ TEST(LcmLog, WhatIsGarbledIsPassedOver) {
   std::string bytes = bytes_of(folder / "whole");
   constexpr std::size_t kFirstEvent = 28 + 9 + 100, kDataLength = 24;
   bytes[kFirstEvent + kDataLength] = '\x7F';
-  const Read read = read_all(folder.write("garbled", bytes));
+  const ReadLog read = read_log(folder.write("garbled", bytes));
   ASSERT_EQ(read.events.size(), 4U);
   EXPECT_EQ(read.events[1].channel, "CHANNEL_2");
   EXPECT_THAT(read.broken_off, HasSubstr("138 bytes"));
@@ -113,7 +113,7 @@ TEST(LcmLog, SurvivesAnyBytes) {
     }
     const auto file = folder.write("garbled", bytes);
     if (is_lcm_log(file)) {
-      ASSERT_LE(read_all(file).events.size(), 4U);
+      ASSERT_LE(read_log(file).events.size(), 4U);
     }
   }
 }

@@ -59,12 +59,12 @@ private:
   GroundTrend trend_{kSide * kSide};
 };
 
-float slope(float x, float y) {
+float incline(float x, float y) {
   return 0.25F * x - 0.1F * y + 3;
 }
 
 TEST(GroundTrend, GoesOnWithASlopeBetweenTheRings) {
-  EXPECT_LT(Rings(slope).error(slope), 0.03F);
+  EXPECT_LT(Rings(incline).error(incline), 0.03F);
 }
 
 TEST(GroundTrend, FollowsHills) {
@@ -75,9 +75,9 @@ TEST(GroundTrend, FollowsHills) {
 TEST(GroundTrend, WhatStandsOnTheGroundOrLiesBelowItHardlyMovesIt) {
   const auto littered = [](float x, float y) {
     const bool rock = std::hypot(x - 3, y - 1) < 0.8F, hole = std::hypot(x + 4, y + 3) < 1.2F;
-    return slope(x, y) + (rock ? 0.8F : hole ? -0.7F : 0.0F);
+    return incline(x, y) + (rock ? 0.8F : hole ? -0.7F : 0.0F);
   };
-  EXPECT_LT(Rings(littered).error(slope), 0.08F);
+  EXPECT_LT(Rings(littered).error(incline), 0.08F);
 }
 
 TEST(GroundTrend, AnswersWhereLittleOrNothingIsKnown) {
@@ -100,7 +100,7 @@ TEST(GroundTrend, AnswersWhereLittleOrNothingIsKnown) {
 }
 
 TEST(GroundTrend, AllocatesNothing) {
-  Rings rings(slope);
+  Rings rings(incline);
   const std::vector<std::uint8_t> known(kSide * kSide, 1);
   const std::vector<float> heights(kSide * kSide, 1);
   const std::size_t before = test::allocations();

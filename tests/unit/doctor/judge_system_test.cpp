@@ -13,15 +13,15 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using Verdict = Finding::Verdict;
 
-constexpr std::string_view kLimits =
+constexpr std::string_view kServiceLimits =
     "Max locked memory         8388608              8388608              bytes     \n"
     "Max realtime priority     40                   40                             \n";
 
 TEST(Rights, AreTheLimitsOrTheCapabilities) {
-  Rights rights = rights_of(kLimits, "CapEff:\t0000000000000000\n");
+  Rights rights = rights_of(kServiceLimits, "CapEff:\t0000000000000000\n");
   EXPECT_EQ(rights.priority, 40U);
   EXPECT_EQ(rights.locked_bytes, 8388608U);
-  rights = rights_of(kLimits, "CapEff:\t000001ffffffffff\n");
+  rights = rights_of(kServiceLimits, "CapEff:\t000001ffffffffff\n");
   EXPECT_EQ(rights.priority, kUnlimited);
   EXPECT_EQ(rights.locked_bytes, kUnlimited);
 }

@@ -4,12 +4,11 @@
 
 #include <tuple>
 
+#include "scree/core/nanoseconds.hpp"
 #include "wheel.hpp"
 
 namespace scree::encoder {
 namespace {
-
-constexpr std::int64_t kMs = 1'000'000;
 
 EncoderSettings counter(int length = 32, double scale = 0.000157, bool is_signed = true) {
   EncoderSettings settings;
@@ -48,7 +47,7 @@ class Driving : public testing::TestWithParam<std::tuple<int, double, bool>> {};
 
 TEST_P(Driving, NothingOfARealDriveIsRefused) {
   const auto [interval, scale, is_in_bursts] = GetParam();
-  Wheel wheel(counter(32, scale), interval * kMs);
+  Wheel wheel(counter(32, scale), interval * kMillisecond);
   wheel.is_in_bursts = is_in_bursts;
   wheel.send(wheel.raw());
   int refused = wheel.roll(1, 0, 0);
@@ -75,10 +74,10 @@ TEST(Odometer, AGarbledReadingIsRefusedAndTheNextGoesOn) {
   wheel.roll(1, 1, 1);
   for (const unsigned bit : {11U, 13U, 20U, 30U}) {
     const double before = wheel.odometer.distance();
-    wheel.t_ns += 5 * kMs;
+    wheel.t_ns += 5 * kMillisecond;
     EXPECT_EQ(wheel.send(wheel.raw() ^ (std::int64_t{1} << bit)), Refusal::implausible) << bit;
     EXPECT_EQ(wheel.odometer.distance(), before);
-    wheel.t_ns -= 5 * kMs;
+    wheel.t_ns -= 5 * kMillisecond;
     EXPECT_EQ(wheel.roll(0.1, 1, 1), 0);
   }
   EXPECT_NEAR(wheel.odometer.distance(), wheel.way - 0.01, 0.0003);
@@ -87,7 +86,7 @@ TEST(Odometer, AGarbledReadingIsRefusedAndTheNextGoesOn) {
 
 TEST(Odometer, ARestartedCounterDoesNotMakeTheDistanceJump) {
   for (const int interval : {5, 10, 50, 100}) {
-    Wheel wheel(counter(), interval * kMs);
+    Wheel wheel(counter(), interval * kMillisecond);
     wheel.first_count = 1'000'000;
     wheel.roll(3, 1, 1);
     wheel.first_count = -static_cast<std::int64_t>(wheel.way / 0.000157);
@@ -112,7 +111,7 @@ TEST(Odometer, AFrozenCounterIsRefusedUntilItMoves) {
   wheel.roll(1, 1, 1);
   const std::int64_t stuck = wheel.raw();
   for (int i = 0; i < 50; ++i) {
-    wheel.t_ns += 10 * kMs;
+    wheel.t_ns += 10 * kMillisecond;
     EXPECT_EQ(wheel.send(stuck), Refusal::frozen) << i;
   }
   wheel.way += 0.5;
@@ -122,7 +121,7 @@ TEST(Odometer, AFrozenCounterIsRefusedUntilItMoves) {
 
 TEST(Odometer, AWheelThatWasBlockedIsBelievedAfterASecond) {
   for (const int interval : {5, 10, 20}) {
-    Wheel wheel(counter(), interval * kMs);
+    Wheel wheel(counter(), interval * kMillisecond);
     wheel.roll(1, 1, 1);
     EXPECT_EQ(wheel.roll(3, 0, 0), 1000 / interval);
     EXPECT_EQ(wheel.seen[Refusal::frozen], 1000 / interval);
@@ -133,10 +132,10 @@ TEST(Odometer, AWheelThatWasBlockedIsBelievedAfterASecond) {
 
 TEST(Odometer, ACounterOlderThanItsFramesIsNotFrozen) {
   // Sent every 10 ms, counted every 20 ms.
-  Wheel wheel(counter(), 20 * kMs);
+  Wheel wheel(counter(), 20 * kMillisecond);
   for (int i = 0; i < 200; ++i) {
     EXPECT_EQ(wheel.roll(0.02, 1, 1), 0);
-    EXPECT_EQ(wheel.send(wheel.raw(), wheel.t_ns + 10 * kMs), Refusal::none);
+    EXPECT_EQ(wheel.send(wheel.raw(), wheel.t_ns + 10 * kMillisecond), Refusal::none);
   }
 }
 
@@ -187,7 +186,7 @@ TEST(Odometer, RepeatedAndLateStampsAreRefused) {
   Wheel wheel(counter());
   wheel.roll(1, 1, 1);
   EXPECT_EQ(wheel.send(wheel.raw()), Refusal::time);
-  EXPECT_EQ(wheel.send(wheel.raw(), wheel.t_ns - 3 * kMs), Refusal::time);
+  EXPECT_EQ(wheel.send(wheel.raw(), wheel.t_ns - 3 * kMillisecond), Refusal::time);
   EXPECT_EQ(wheel.roll(1, 1, 1), 0);
   EXPECT_NEAR(wheel.odometer.distance(), wheel.way - 0.01, 0.0003);
 }
@@ -215,9 +214,9 @@ TEST(Odometer, AGarbledSpeedIsRefused) {
   wheel.roll(1, 1, 1);
   const double before = wheel.odometer.distance();
   for (const int garbled : {3000, 32767, -32768, -1000}) {
-    wheel.t_ns += 5 * kMs;
+    wheel.t_ns += 5 * kMillisecond;
     EXPECT_EQ(wheel.send(garbled), Refusal::implausible) << garbled;
-    wheel.t_ns += 5 * kMs;
+    wheel.t_ns += 5 * kMillisecond;
     EXPECT_EQ(wheel.send(1000), Refusal::none);
   }
   EXPECT_NEAR(wheel.odometer.distance(), before + 0.04, 1e-9);
@@ -259,7 +258,8 @@ TEST(Odometer, AnyReadingsAreSafe) {
       std::int64_t t_ns = 0;
       for (int i = 0; i < 20'000; ++i) {
         if (i % 50 == 0) t_ns = static_cast<std::int64_t>(random() >> 1U);
-        if (t_ns < INT64_MAX - 20 * kMs) t_ns += static_cast<std::int64_t>(random() % (20 * kMs));
+        if (t_ns < INT64_MAX - 20 * kMillisecond)
+          t_ns += static_cast<std::int64_t>(random() % (20 * kMillisecond));
         const auto raw = static_cast<std::int64_t>(i % 3 == 0 ? random() : 7U);
         odometer.take({t_ns, raw, scaled(settings, raw)});
         ASSERT_TRUE(std::isfinite(odometer.distance()));

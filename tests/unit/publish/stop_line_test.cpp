@@ -6,10 +6,11 @@
 #include <limits>
 #include <random>
 
+#include "scree/core/nanoseconds.hpp"
+
 namespace scree {
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000;
 constexpr StopSettings kZone{.length = 2, .width = 1, .hold = 0.5};
 
 Obstacle box(double x, double y, double length, double width, double yaw = 0) {
@@ -107,25 +108,25 @@ TEST(StopLine, BeginsBlindAndOn) {
   StopLine line(kZone);
   EXPECT_TRUE(line.is_on(0));
   line.see(list_of({}), 0);
-  EXPECT_TRUE(line.is_on(9'000 * kMs));
-  line.set_blind(false, 9'000 * kMs);
-  EXPECT_TRUE(line.is_on(9'499 * kMs));
-  EXPECT_FALSE(line.is_on(9'500 * kMs));
+  EXPECT_TRUE(line.is_on(9'000 * kMillisecond));
+  line.set_blind(false, 9'000 * kMillisecond);
+  EXPECT_TRUE(line.is_on(9'499 * kMillisecond));
+  EXPECT_FALSE(line.is_on(9'500 * kMillisecond));
 }
 
 TEST(StopLine, IsOnWhileAnObstacleIsAheadAndHeldAfter) {
   StopLine line(kZone);
   line.set_blind(false, 0);
-  std::int64_t now = 1'000 * kMs;
+  std::int64_t now = 1'000 * kMillisecond;
   line.see(list_of({box(5, 0, 0.2, 0.2)}), now);
   EXPECT_FALSE(line.is_on(now));
-  line.see(list_of({box(5, 0, 0.2, 0.2), box(1, 0, 0.2, 0.2)}), now += 100 * kMs);
+  line.see(list_of({box(5, 0, 0.2, 0.2), box(1, 0, 0.2, 0.2)}), now += 100 * kMillisecond);
   EXPECT_TRUE(line.is_on(now));
-  EXPECT_TRUE(line.is_on(now + 5'000 * kMs));
-  line.see(list_of({box(5, 0, 0.2, 0.2)}), now += 100 * kMs);
-  EXPECT_TRUE(line.is_on(now + 499 * kMs));
-  EXPECT_FALSE(line.is_on(now + 500 * kMs));
-  line.set_blind(true, now += 1'000 * kMs);
+  EXPECT_TRUE(line.is_on(now + 5'000 * kMillisecond));
+  line.see(list_of({box(5, 0, 0.2, 0.2)}), now += 100 * kMillisecond);
+  EXPECT_TRUE(line.is_on(now + 499 * kMillisecond));
+  EXPECT_FALSE(line.is_on(now + 500 * kMillisecond));
+  line.set_blind(true, now += 1'000 * kMillisecond);
   EXPECT_TRUE(line.is_on(now));
 }
 

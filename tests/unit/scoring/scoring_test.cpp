@@ -5,13 +5,13 @@
 
 #include <numbers>
 
+#include "scree/core/nanoseconds.hpp"
+
 namespace scree {
 namespace {
 
 using testing::ElementsAre;
 
-constexpr std::int64_t kSecond = 1'000'000'000;
-constexpr std::int64_t kMillisecond = 1'000'000;
 constexpr auto kRock = ObstacleKind::positive;
 constexpr auto kHole = ObstacleKind::negative;
 

@@ -24,14 +24,14 @@ Motion wavy_drive() {
   return {std::move(knots), 0, 2'500'000};
 }
 
-struct Drive {
+struct Ride {
   std::vector<ImuMessage> sent;
   std::vector<ImuSample> read;
   xsens::ImuCounters counters;
 };
 
-Drive drive(double rate_hz, int baud, std::int64_t burst_ns) {
-  Drive drive;
+Ride drive(double rate_hz, int baud, std::int64_t burst_ns) {
+  Ride drive;
   const TemporaryFolder folder;
   const Motion motion = wavy_drive();
   SimulatedImuSettings simulated;
@@ -74,7 +74,7 @@ TEST(ImuRoundTrip, EverySampleComesBack) {
   for (const Case& c : {Case{100, 921600, 0, 600'000}, Case{400, 921600, 16'000'000, 1'000'000},
                         Case{100, 115200, 0, 600'000}}) {
     SCOPED_TRACE(c.rate_hz);
-    const Drive result = drive(c.rate_hz, c.baud, c.burst_ns);
+    const Ride result = drive(c.rate_hz, c.baud, c.burst_ns);
     ASSERT_EQ(result.read.size(), result.sent.size());
     EXPECT_EQ(result.counters.all_refused(), 0U);
     EXPECT_EQ(result.counters.bytes_skipped, 0U);

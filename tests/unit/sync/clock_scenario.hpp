@@ -7,12 +7,11 @@
 #include <functional>
 #include <random>
 
+#include "scree/core/nanoseconds.hpp"
 #include "scree/sync/device_clock.hpp"
 
 namespace scree::clock_scenario {
 
-inline constexpr std::int64_t kMicrosecond = 1'000, kMillisecond = 1'000'000,
-                              kSecond = 1'000'000'000;
 inline constexpr std::int64_t kHour = 3600 * kSecond;
 inline constexpr std::int64_t kEpoch = 1'598'612'523 * kSecond;
 

@@ -8,10 +8,10 @@
 #include <random>
 #include <vector>
 
+#include "scree/core/nanoseconds.hpp"
+
 namespace scree {
 namespace {
-
-constexpr std::int64_t kSecond = 1'000'000'000;
 
 TEST(DelayEnvelope, FindsALineWithoutNoise) {
   for (const std::int64_t skew : {-200'000, -37'000, 0, 5'000, 200'000}) {

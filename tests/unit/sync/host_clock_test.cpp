@@ -5,10 +5,11 @@
 #include <cstdlib>
 #include <random>
 
+#include "scree/core/nanoseconds.hpp"
+
 namespace scree {
 namespace {
 
-constexpr std::int64_t kSecond = 1'000'000'000, kMillisecond = 1'000'000;
 constexpr std::int64_t kEpoch = 1'598'612'523 * kSecond;
 
 /// A host whose wall clock somebody sets.

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "allocation_counter.hpp"
+#include "scree/core/nanoseconds.hpp"
 #include "scree/core/pose.hpp"
 #include "scree/core/rotation.hpp"
 
@@ -13,7 +14,6 @@ namespace scree {
 namespace {
 
 constexpr std::int64_t kStart = 1'598'612'523'000'000'000;
-constexpr std::int64_t kSecond = 1'000'000'000, kMillisecond = 1'000'000;
 constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
 ImuSample turning(std::int64_t t_ns, const Eigen::Vector3d& rate) {

@@ -8,11 +8,9 @@
 namespace scree {
 namespace {
 
-constexpr float kCell = 0.3F;
-
 class RegistrationTest : public testing::Test {
 protected:
-  SurfelMap map_{kCell};
+  SurfelMap map_{0.3F};
   Registration registration_{1 << 15};
   DeskewedSweep sweep_{1 << 15};
   PoseFilter filter_;

@@ -14,7 +14,7 @@
 namespace scree {
 namespace {
 
-constexpr std::int64_t kStart = 1'598'612'523'000'000'000, kSweep = 100'000'000;
+constexpr std::int64_t kStart = 1'598'612'523'000'000'000, kTurnNs = 100'000'000;
 constexpr double kVoxel = 0.05;
 
 using Cell = std::tuple<int, int, int>;
@@ -41,7 +41,7 @@ protected:
     sweep_.origins.push_back(Eigen::Vector3f(0, 0, 1));
   }
   void end_sweep() {
-    map_.add(sweep_, pose_, now_ns_ += kSweep);
+    map_.add(sweep_, pose_, now_ns_ += kTurnNs);
     sweep_.points.clear();
     sweep_.origins.clear();
   }

@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <functional>
 
+#include "scree/core/nanoseconds.hpp"
 #include "scree/drivers/xsens/imu_stream.hpp"
 #include "unit/temporary_folder.hpp"
 #include "unit/xsens/emulated_mti.hpp"
@@ -26,7 +27,6 @@ using test::EmulatedMti;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-constexpr std::int64_t kSecond = 1'000'000'000;
 constexpr int kPatience = 10'000;  // milliseconds, for what is sure to come
 
 bool readable(int descriptor, int milliseconds) {

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <random>
 
+#include "scree/core/nanoseconds.hpp"
 #include "unit/allocation_counter.hpp"
 #include "unit/xsens/message_builder.hpp"
 
@@ -18,7 +19,6 @@ using test::integer;
 using test::joined;
 using test::reals;
 
-constexpr std::int64_t kSecond = 1'000'000'000, kMillisecond = 1'000'000;
 constexpr std::int64_t kEpoch = 1'598'612'523 * kSecond;
 
 ByteVector counter(unsigned value) {

@@ -5,6 +5,7 @@
 
 #include <random>
 
+#include "scree/core/nanoseconds.hpp"
 #include "unit/xsens/emulated_mti.hpp"
 
 namespace scree::xsens {
@@ -17,8 +18,6 @@ using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using State = StartUp::State;
-
-constexpr std::int64_t kSecond = 1'000'000'000;
 
 /// Runs a start against a device, with time that passes only when nothing else happens. The device
 /// measures all the while that it may.
