@@ -46,12 +46,18 @@ Result<Output> Output::open(const std::string& name, bool is_active_low, bool is
   auto line = open_line(name, is_active_low, true, is_on);
   if (!line) return tl::make_unexpected(line.error());
   Output output;
+  output.name_ = name;
+  output.is_active_low_ = is_active_low;
   output.line_ = std::move(*line);
   return output;
 }
 
 bool Output::set(bool is_on) {
-  return gpio::set(*line_, is_on);
+  if (line_ && gpio::set(*line_, is_on)) return true;
+  line_.reset();
+  auto line = open_line(name_, is_active_low_, true, is_on);
+  if (line) line_ = std::move(*line);
+  return line.has_value();
 }
 
 Result<PulseInput> PulseInput::open(const std::string& name, bool is_active_low) {

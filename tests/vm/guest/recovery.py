@@ -111,6 +111,19 @@ def a_usb_adapter_is_the_imus(robot):
     robot.watch.says("health ok", mark)
 
 
+def gpio_chip_goes(robot):
+    """the adapter of the lines is unplugged, which is said, and plugged in again"""
+    mark = journal.mark()
+    robot.chip.unplug()
+    journal.says("the heartbeat line cannot be set", mark)
+    robot.chip.plug_in()
+    journal.says("the heartbeat line can be set again", mark)
+    robot.silence()
+    until(lambda: robot.chip.value("stop") == 1, "the stop line")
+    robot.play()
+    until(lambda: robot.chip.value("stop") == 0, "the stop line lets go")
+
+
 def a_bad_start_is_tried_again(robot):
     """a broken file at the start: systemd tries until it is mended"""
     robot.configure(stop="length = -1.0")
@@ -128,5 +141,6 @@ STEPS = [
     a_thread_hangs,
     the_process_is_killed,
     a_usb_adapter_is_the_imus,
+    gpio_chip_goes,
     a_bad_start_is_tried_again,
 ]

@@ -95,7 +95,7 @@ class Robot:
         text = text.replace('interface = "can0"', 'interface = "vcan0"')
         lines = (
             f'[gpio]\npps = "{self.chip.name}:pps"\nstop = "rig:stop"\n'
-            f'heartbeat = "{self.chip.name}:2"\n'
+            'heartbeat = "rig:2"\n'
         )
         with open(CONFIG, "w") as file:
             file.write(f"{text}{lines}[stop]\n{stop}\n[map]\n{MAP}voxel = {voxel}\n")

@@ -105,12 +105,18 @@ class GpioChip:
         for number, name in enumerate(lines):
             os.mkdir(f"{chip}/bank0/line{number}")
             self._write(f"{chip}/bank0/line{number}/name", name)
-        self._write(f"{chip}/live", 1)
-        with open(f"{chip}/bank0/chip_name") as file:
+        self.config, self.lines = chip, lines
+        self.plug_in()
+
+    def plug_in(self):
+        self._write(f"{self.config}/live", 1)
+        with open(f"{self.config}/bank0/chip_name") as file:
             self.name = file.read().strip()
         (self.folder,) = glob.glob(f"/sys/devices/platform/*/{self.name}/sim_gpio0")
         self.folder = os.path.dirname(self.folder)
-        self.lines = lines
+
+    def unplug(self):
+        self._write(f"{self.config}/live", 0)
 
     @staticmethod
     def _write(path, value):

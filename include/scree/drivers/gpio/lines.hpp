@@ -17,18 +17,21 @@ struct ReleaseLine {
 };
 using LineHandle = std::unique_ptr<HeldLine, ReleaseLine>;
 
-/// A line that is driven. When it is released, at the end of the process at the latest, its level
-/// is up to the chip: choose the active level so that a robot without driver stops.
+/// A line that is driven, and is opened again when its chip comes back. When it is released, at the
+/// end of the process at the latest, its level is up to the chip: choose the active level so that a
+/// robot without driver stops.
 class Output {
 public:
   /// @param name CHIP:LINE; the chip's name, label or path, the line's number or name
   static Result<Output> open(const std::string& name, bool is_active_low, bool is_on);
 
-  /// False when it could not be set: the chip is gone.
+  /// False when it could not be set: the chip is gone, or another program holds the line.
   bool set(bool is_on);
 
 private:
-  LineHandle line_;
+  std::string name_;
+  bool is_active_low_ = false;
+  LineHandle line_;  // none while the chip is gone
 };
 
 /// A line on which pulses arrive: their rising edges (falling, where it is active low).
