@@ -95,7 +95,7 @@ float GroundSurface::gather(PointView points) {
     float* const last = z_.begin() + begin_[cell + 1];
     float* const middle = first + (last - first) / 2;
     if (first != last) std::nth_element(first, middle, last);
-    median_[cell] = first == last ? kUnknown : *middle;
+    median_[cell] = first == last ? kUnseen : *middle;
   }
   return static_cast<float>(points.size()) / static_cast<float>(std::max<std::size_t>(occupied, 1));
 }
