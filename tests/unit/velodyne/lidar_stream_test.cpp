@@ -8,11 +8,12 @@
 #include <vector>
 
 #include "packet_builder.hpp"
+#include "scree/core/nanoseconds.hpp"
 
 namespace scree::velodyne {
 namespace {
 
-constexpr std::int64_t kEpoch = 1'598'612'523'000'000'000, kSecond = 1'000'000'000;
+constexpr std::int64_t kEpoch = 1'598'612'523 * kSecond;
 
 struct Seen {
   std::int64_t begin_ns, end_ns;
