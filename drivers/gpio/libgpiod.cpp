@@ -7,6 +7,8 @@
 #include <cstring>
 #include <filesystem>
 
+#include "scree/core/nanoseconds.hpp"
+
 namespace scree::gpio {
 
 struct CloseChip {
@@ -98,7 +100,7 @@ std::optional<std::int64_t> read_edge(HeldLine& line) {
   gpiod_line_event event{};
   if (gpiod_line_event_wait(line.line, &at_once) != 1) return std::nullopt;
   if (gpiod_line_event_read(line.line, &event) != 0) return std::nullopt;
-  return std::int64_t{event.ts.tv_sec} * 1'000'000'000 + event.ts.tv_nsec;
+  return to_ns(event.ts);
 }
 
 #else  // version 2

@@ -1,20 +1,13 @@
 #include "scree/drivers/gpio/lines.hpp"
 
-#include <time.h>
-
 #include <cstdlib>
 #include <utility>
 
 #include "libgpiod.hpp"
+#include "scree/core/nanoseconds.hpp"
 
 namespace scree::gpio {
 namespace {
-
-std::int64_t now_ns(clockid_t clock) {
-  timespec now;
-  clock_gettime(clock, &now);
-  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
-}
 
 struct LineName {
   std::string chip, line;
@@ -71,7 +64,7 @@ Result<PulseInput> PulseInput::open(const std::string& name, bool is_active_low)
 std::optional<std::int64_t> PulseInput::read() {
   const auto stamp_ns = read_edge(*line_);
   if (!stamp_ns) return std::nullopt;
-  return edge_host_ns(*stamp_ns, now_ns(CLOCK_MONOTONIC), now_ns(CLOCK_REALTIME));
+  return edge_host_ns(*stamp_ns, read_clock(CLOCK_MONOTONIC), read_clock(CLOCK_REALTIME));
 }
 
 int PulseInput::descriptor() const {

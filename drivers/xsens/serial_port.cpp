@@ -8,12 +8,13 @@
 #include <poll.h>
 #include <sys/file.h>
 #include <sys/ioctl.h>
-#include <time.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+
+#include "scree/core/nanoseconds.hpp"
 
 namespace scree::xsens {
 namespace {
@@ -37,12 +38,6 @@ std::string reason_of(int error, const std::string& device) {
     default:
       return "cannot open the serial port " + device + ": " + std::strerror(error);
   }
-}
-
-std::int64_t now_ns() {
-  timespec now{};
-  clock_gettime(CLOCK_REALTIME, &now);
-  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
 }
 
 /// Has the driver hand on bytes at once, where it can: an FTDI adapter else keeps them for 16 ms.
@@ -101,7 +96,7 @@ SerialPort::Reading SerialPort::receive(std::span<std::uint8_t> buffer, Received
     size = ::read(port_.get(), buffer.data(), buffer.size());
   } while (size < 0 && errno == EINTR);
   if (size > 0) {
-    received = {buffer.first(static_cast<std::size_t>(size)), now_ns()};
+    received = {buffer.first(static_cast<std::size_t>(size)), read_clock(CLOCK_REALTIME)};
     return Reading::bytes;
   }
   if (size == 0 || (errno != EAGAIN && errno != EWOULDBLOCK)) return Reading::lost;

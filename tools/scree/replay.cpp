@@ -33,12 +33,6 @@ struct ReplayOptions {
   bool loop = false;
 };
 
-std::int64_t monotonic_ns() {
-  timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return now.tv_sec * kSecond + now.tv_nsec;
-}
-
 void sleep_until(std::int64_t due_ns) {
   const timespec due{due_ns / kSecond, due_ns % kSecond};
   while (!is_interrupted() &&
@@ -115,11 +109,11 @@ public:
     if (!imu_) return;
     fmt::print(stderr, "scree: the IMU is {}, waiting for screed to open it\n", imu_->name());
     constexpr std::int64_t kPatience = 20 * kSecond, kConfigures = kSecond;
-    const std::int64_t begin = monotonic_ns();
+    const std::int64_t begin = read_clock(CLOCK_MONOTONIC);
     std::int64_t opened_ns = 0;
     while (!is_interrupted()) {
       imu_->serve(kSecond / 50);
-      const std::int64_t now = monotonic_ns();
+      const std::int64_t now = read_clock(CLOCK_MONOTONIC);
       if (!imu_->is_open()) {
         opened_ns = 0;
         if (now - begin > kPatience) {
@@ -138,7 +132,7 @@ public:
   /// Sends the whole range once. @param span_ns from the capture's first arrival to its last, for
   /// the progress; 0: unknown
   void play(CaptureEvents& events, std::int64_t span_ns) {
-    if (start_ns_ == 0) start_ns_ = turn_start_ns_ = monotonic_ns();
+    if (start_ns_ == 0) start_ns_ = turn_start_ns_ = read_clock(CLOCK_MONOTONIC);
     const std::int64_t length = std::min(span_ns, range_.end_ns()) - range_.begin_ns();
     std::optional<Progress> progress;
     if (span_ns > 0) progress.emplace("playing", static_cast<std::size_t>(length));
@@ -160,8 +154,8 @@ public:
   /// Until what was sent last is read: with the terminal it would be lost.
   void finish() {
     if (!imu_) return;
-    const std::int64_t end = monotonic_ns() + kSecond / 5;
-    for (std::int64_t now = 0; (now = monotonic_ns()) < end;) imu_->serve(end - now);
+    const std::int64_t end = read_clock(CLOCK_MONOTONIC) + kSecond / 5;
+    for (std::int64_t now = 0; (now = read_clock(CLOCK_MONOTONIC)) < end;) imu_->serve(end - now);
   }
 
   bool has_sent() const {
@@ -170,7 +164,7 @@ public:
   }
 
   void print_summary() const {
-    const double seconds = static_cast<double>(monotonic_ns() - start_ns_) / 1e9;
+    const double seconds = static_cast<double>(read_clock(CLOCK_MONOTONIC) - start_ns_) / 1e9;
     std::string text = fmt::format("sent {} data packets to {} and {} position packets to {}",
                                    data_.sent(), data_.name(), position_.sent(), position_.name());
     if (imu_) text += fmt::format(", {} reads of the IMU to {}", imu_->sent(), imu_->name());
@@ -188,8 +182,8 @@ private:
   void wait_until(std::int64_t due_ns) {
     if (!imu_) return sleep_until(due_ns);
     do {
-      imu_->serve(due_ns - monotonic_ns());
-    } while (!is_interrupted() && monotonic_ns() < due_ns);
+      imu_->serve(due_ns - read_clock(CLOCK_MONOTONIC));
+    } while (!is_interrupted() && read_clock(CLOCK_MONOTONIC) < due_ns);
   }
 
   void send(const CaptureEvent& event) {

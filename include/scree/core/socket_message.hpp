@@ -2,12 +2,13 @@
 
 #include <netinet/in.h>
 #include <sys/socket.h>
-#include <time.h>
 
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
 #include <span>
+
+#include "scree/core/nanoseconds.hpp"
 
 namespace scree {
 
@@ -45,7 +46,7 @@ inline SocketMessage receive_message(int socket, std::span<std::uint8_t> buffer,
     if (item->cmsg_type == SCM_TIMESTAMPNS) {
       timespec arrival;
       std::memcpy(&arrival, CMSG_DATA(item), sizeof arrival);
-      received.arrival_ns = std::int64_t{arrival.tv_sec} * 1'000'000'000 + arrival.tv_nsec;
+      received.arrival_ns = to_ns(arrival);
     } else if (item->cmsg_type == SO_RXQ_OVFL) {
       std::memcpy(&drops, CMSG_DATA(item), sizeof drops);
     }
