@@ -61,7 +61,7 @@ const ObstacleList& Pipeline::process(const Sweep& sweep) {
 void Pipeline::detect_in_map() {
   const RollingMap& map = mapper_->map();
   list_.pose = mapper_->pose();
-  map_detector_.detect(map.cloud(), found_, timer_);
+  map_detector_.detect(map.cloud(), map.beams(), found_, timer_);
   for (Obstacle& obstacle : found_) obstacle.center += map.origin();
   tracker_.update(
       list_.stamp_ns, list_.pose.translation, {found_.data(), found_.size()},
@@ -72,7 +72,7 @@ void Pipeline::detect_in_map() {
 void Pipeline::detect_in_sweep(const Sweep& sweep) {
   deskew(sweep, lidar_, still_, sweep_);
   timer_.done(Stage::motion);
-  sweep_detector_.detect(sweep_.points, list_.obstacles, timer_);
+  sweep_detector_.detect(sweep_.points, {}, list_.obstacles, timer_);
 }
 
 StageCounts Pipeline::counts() const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "scree/detect/cell.hpp"
 
@@ -71,11 +72,13 @@ Detector::Detector(const DetectSettings& settings, Network network)
               count(settings.max_points)),
       surface_(settings.uses_surface() ? count(settings.max_points) : 0,
                settings.uses_surface() ? count(settings.max_ground_cells) : 0),
+      solidity_(settings.uses_surface() ? count(settings.max_ground_cells) : 0),
       surroundings_(settings.uses_surface() ? count(settings.max_ground_cells) : 0) {
   limit_ = common_reach(settings_, gradient_, suppression_);
 }
 
-void Detector::detect(PointView cloud, FixedVector<Obstacle>& obstacles, StageTimer& timer) {
+void Detector::detect(PointView cloud, std::span<const BeamCount> beams,
+                      FixedVector<Obstacle>& obstacles, StageTimer& timer) {
   counts_ = {.input = cloud.size()};
   thin(cloud);
   timer.done(Stage::voxel_grid);
@@ -92,7 +95,7 @@ void Detector::detect(PointView cloud, FixedVector<Obstacle>& obstacles, StageTi
   }
   find_clusters(edges);
   timer.done(Stage::clusters);
-  measure_clusters();
+  measure_clusters(cloud, beams);
   timer.done(Stage::features);
   recognise(obstacles);
   timer.done(Stage::network);
@@ -227,9 +230,14 @@ void Detector::count_members(std::span<const std::uint32_t> labels, std::size_t 
   for (const std::uint32_t label : labels) ++sizes_[label];
 }
 
-void Detector::measure_clusters() {
+void Detector::measure_clusters(PointView cloud, std::span<const BeamCount> beams) {
   EdgePoints& edges = thins_edges() ? kept_ : edges_;
-  if (settings_.uses_surface()) surroundings_.build(cells_.points(), height_, edges, surface_);
+  if (settings_.uses_surface()) {
+    surroundings_.build(cells_.points(), height_, edges, surface_);
+    const float highest = settings_.clearance > 0 ? static_cast<float>(settings_.clearance)
+                                                  : std::numeric_limits<float>::infinity();
+    solidity_.build(cloud, beams, surface_, static_cast<float>(settings_.body_height), highest);
+  }
   for (Cluster& cluster : clusters_.all()) {
     const auto members = clusters_.members(cluster);
     if (settings_.ground == GroundReference::ring) {
@@ -240,7 +248,9 @@ void Detector::measure_clusters() {
       cluster.ground = surface_.height(cluster.box.center_x, cluster.box.center_y);
     }
     cluster.features = measure(edges, members);
-    if (settings_.uses_surface()) surroundings_.measure(cluster, members, edges, surface_);
+    if (settings_.uses_surface()) {
+      surroundings_.measure(cluster, members, edges, surface_, solidity_);
+    }
   }
 }
 

@@ -55,10 +55,12 @@ bool Surroundings::borders_on(std::size_t cell, std::uint8_t side, std::size_t c
 }
 
 void Surroundings::measure(Cluster& cluster, std::span<const std::uint32_t> members,
-                           const EdgePoints& edges, const GroundSurface& surface) {
+                           const EdgePoints& edges, const GroundSurface& surface,
+                           const Solidity& solidity) {
   ++number_;
+  cells_.clear();
   double slopes = 0;
-  float cells = 0, rim = 0, through = 0, spread = 0;
+  float rim = 0, through = 0, spread = 0;
   for (const std::uint32_t i : members) {
     slopes += std::hypot(edges.slope_x[i], edges.slope_y[i]);
     if (is_amid_ground(edges.points.x[i], edges.points.y[i], surface)) ++through;
@@ -71,9 +73,10 @@ void Surroundings::measure(Cluster& cluster, std::span<const std::uint32_t> memb
       continue;
     }
     lowest_[cell] = highest_[cell] = height;
-    ++cells;
+    cells_.push_back(static_cast<std::uint32_t>(cell));
     if (borders_on(cell, height > 0 ? below : above, surface.columns())) ++rim;
   }
+  const auto cells = static_cast<float>(cells_.size());
   constexpr float kAround = 0.3F, kFurtherAround = 0.6F;
   float inside = 0, unseen = 0, around = 0, ground = 0, level_cells = 0, uneven = 0;
   const OrientedBox& box = cluster.box;
@@ -105,6 +108,28 @@ void Surroundings::measure(Cluster& cluster, std::span<const std::uint32_t> memb
   features[cell_points] = static_cast<float>(members.size()) / cells;
   features[cell_spread] = spread / cells;
   features[roughness] = uneven / std::max(level_cells, 1.0F);
+  measure_solidity(features, solidity);
+}
+
+void Surroundings::measure_solidity(Features& features, const Solidity& solidity) {
+  constexpr float kSolid = 0.7F;
+  const float half = std::max(features[max_height], -features[min_height]) / 2;
+  float solid = 0, ended = 0, top_ended = 0, top_passed = 0;
+  solidities_.clear();
+  for (const std::uint32_t cell : cells_) {
+    if (solidity.of(cell) >= kSolid) ++solid;
+    solidities_.push_back(solidity.around(cell));
+    ended += solidity.ended(cell);
+    if (std::max(highest_[cell], -lowest_[cell]) < half) continue;
+    top_ended += solidity.ended(cell);
+    top_passed += solidity.passed(cell);
+  }
+  float* const quartile = solidities_.begin() + 3 * solidities_.size() / 4;
+  std::nth_element(solidities_.begin(), quartile, solidities_.end());
+  features[solid_share] = solid / static_cast<float>(cells_.size());
+  features[top_solidity] = Solidity::share(top_ended, top_passed);
+  features[core_solidity] = *quartile;
+  features[beam_count] = ended;
 }
 
 }  // namespace scree

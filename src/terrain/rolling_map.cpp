@@ -13,7 +13,16 @@ namespace {
 /// Beams are followed for the last metres before their hit: there, near the ground, things stand.
 constexpr float kSeenThrough = 4;
 /// Beams that went through a voxel since it was hit last: it has moved away.
-constexpr std::uint16_t kMostPassed = 4;
+constexpr std::uint16_t kMostPassed = 8;
+
+/// Both fade before one of them overflows.
+void count(std::uint16_t& which, std::uint16_t more, BeamCount& beams) {
+  constexpr std::uint16_t kMost = 60'000;
+  which = static_cast<std::uint16_t>(which + more);
+  if (which < kMost) return;
+  beams.ended /= 2;
+  beams.passed /= 2;
+}
 
 }  // namespace
 
@@ -23,7 +32,8 @@ RollingMap::RollingMap(const MapSettings& settings)
       voxels_(static_cast<std::size_t>(settings.max_voxels)),
       index_(std::bit_ceil(2 * voxels_.capacity())),
       mask_(index_.capacity() - 1),
-      cloud_(voxels_.capacity()) {
+      cloud_(voxels_.capacity()),
+      beams_(voxels_.capacity()) {
   clear();
 }
 
@@ -31,6 +41,7 @@ void RollingMap::clear() {
   voxels_.clear();
   index_.assign(index_.capacity(), 0);
   cloud_.clear();
+  beams_.clear();
   free_space_.clear();
 }
 
@@ -141,41 +152,46 @@ void RollingMap::add(const DeskewedSweep& sweep, const Pose& pose, std::int64_t 
     voxel->last_sweep = sweep_;
     voxel->seen_ns = end_ns;
     voxel->passed = 0;
+    count(voxel->beams.ended, 1, voxel->beams);
   }
   see_through(sweep, rotation, translation);
   forget(pose);
   gather_cloud();
 }
 
-/// Follows some of the beams, others each sweep, to shortly before what they hit.
+/// Follows some of the beams, others each sweep, to shortly before what they hit. What has moved
+/// away must stand clear of the hit, for poses err; grass is counted nearer to it.
 void RollingMap::see_through(const DeskewedSweep& sweep, const Eigen::Matrix3f& rotation,
                              const Eigen::Vector3f& translation) {
-  constexpr std::size_t kEvery = 8;
-  constexpr float kClear = 0.3F, kClearShare = 0.08F;  // before the hit: metres, and of the range
-  constexpr float kBeam = 0.6F;                        // of a voxel: this near a beam hits it
+  constexpr std::uint16_t kEvery = 4;
+  constexpr float kClear = 0.3F, kClearShare = 0.08F;   // before the hit: metres, and of the range
+  constexpr float kBeam = 0.6F;                         // of a voxel: this near a beam hits it
+  constexpr float kFartherOn = 0.12F, kThrough = 0.4F;  // metres behind it, and of a voxel
   const auto voxel_size = static_cast<float>(settings_.voxel);
+  const auto reach = static_cast<float>(settings_.reach);
   const Eigen::Vector3f shift = origin_.cast<float>();
-  const float near = kBeam * voxel_size;
+  const float near = kBeam * voxel_size, through = kThrough * voxel_size;
   for (std::size_t i = sweep_ % kEvery; i < sweep.points.size(); i += kEvery) {
     const Eigen::Vector3f from = rotation * sweep.origins[i] + translation;
     const Eigen::Vector3f hit(sweep.points.x[i], sweep.points.y[i], sweep.points.z[i]);
     const Eigen::Vector3f beam = rotation * (hit - sweep.origins[i]);
     const float range = beam.norm();
-    const float end = std::min(range - std::max(kClear, kClearShare * range),
-                               static_cast<float>(settings_.reach));
+    const float end = std::min(range - std::max(kClear, kClearShare * range), reach);
     const Eigen::Vector3f along = beam / range;
     for (float way = 0; way < end; way += FreeSpace::kCell) {
       free_space_.pass(from + way * along + shift, sweep_);
     }
-    for (float way = std::max(0.0F, end - kSeenThrough); way < end; way += voxel_size) {
-      const Eigen::Vector3f place = from + way * along;
-      const std::uint32_t number = index_[slot_of(key_of(place))];
-      if (number == 0) continue;
+    std::uint32_t last = 0;
+    const float grass_end = std::min(range - kFartherOn, reach);
+    for (float way = std::max(0.0F, end - kSeenThrough); way < grass_end; way += voxel_size) {
+      const std::uint32_t number = index_[slot_of(key_of(from + way * along))];
+      if (number == 0 || number == last) continue;
+      last = number;
       Voxel& voxel = voxels_[number - 1];
-      if (voxel.last_sweep == sweep_) continue;
       const Eigen::Vector3f off = voxel.mean - from;
-      if ((off - off.dot(along) * along).squaredNorm() > near * near) continue;
-      ++voxel.passed;
+      const float distance = (off - off.dot(along) * along).norm();
+      if (distance < through) count(voxel.beams.passed, kEvery, voxel.beams);
+      if (distance < near && way < end && voxel.last_sweep != sweep_) ++voxel.passed;
     }
   }
 }
@@ -228,9 +244,11 @@ bool RollingMap::is_confirmed(const Voxel& voxel) const {
 
 void RollingMap::gather_cloud() {
   cloud_.clear();
+  beams_.clear();
   for (const Voxel& voxel : voxels_) {
     if (!is_confirmed(voxel)) continue;
     cloud_.push_back(voxel.mean.x(), voxel.mean.y(), voxel.mean.z(), voxel.reflectivity);
+    beams_.push_back(voxel.beams);
   }
 }
 

@@ -123,7 +123,9 @@ void run(TrainOptions options) {
                                                                    : settings.detect_sweep;
   if (options.out.empty()) options.out = "config/" + detect.network;
   options.learn.seed = options.seed;
-  options.learn.forms[acute_count] = options.learn.forms[obtuse_count] = options.counts;
+  for (const Feature count : {acute_count, obtuse_count, beam_count}) {
+    options.learn.forms[count] = options.counts;
+  }
 
   const std::vector<Part> parts = {
       make_part("training", 0, options.training, options, settings),
@@ -179,7 +181,7 @@ void add_train(CLI::App& app) {
   command->add_option("--restarts", options->learn.restarts, "starts from other weights")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  command->add_option("--counts", options->counts, "how F4 and F5 enter: raw or log1p")
+  command->add_option("--counts", options->counts, "how counts (F4, F5, beam_count) enter: raw or log1p")
       ->transform(CLI::CheckedTransformer(kForms))
       ->default_str("log1p");
   command->callback([options] { run(*options); });

@@ -153,8 +153,8 @@ struct MapSettings {
 /// Obstacles followed from list to list.
 struct TrackingSettings {
   double smoothing = 0.4;
-  double appear = 0.6;
-  double disappear = 0.4;
+  double appear = 0.7;
+  double disappear = 0.45;
   double remember = 1.0;
   double reach = 10;
 };

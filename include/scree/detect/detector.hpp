@@ -15,6 +15,7 @@
 #include "scree/detect/network.hpp"
 #include "scree/detect/overhangs.hpp"
 #include "scree/detect/plane_cells.hpp"
+#include "scree/detect/solidity.hpp"
 #include "scree/detect/supervoxels.hpp"
 #include "scree/detect/suppression.hpp"
 #include "scree/detect/surroundings.hpp"
@@ -53,11 +54,13 @@ public:
 
   /// Finds obstacles in a cloud in a gravity-aligned frame (z up) and writes them, numbered from 1,
   /// in that frame.
+  /// @param beams that came to each point of the cloud; empty where nothing is known of them
   /// @param timer started; takes the time of each stage
-  void detect(PointView cloud, FixedVector<Obstacle>& obstacles, StageTimer& timer);
+  void detect(PointView cloud, std::span<const BeamCount> beams, FixedVector<Obstacle>& obstacles,
+              StageTimer& timer);
   void detect(PointView cloud, FixedVector<Obstacle>& obstacles) {
     StageTimer none;
-    detect(cloud, obstacles, none);
+    detect(cloud, {}, obstacles, none);
   }
 
   const StageCounts& counts() const { return counts_; }
@@ -88,7 +91,7 @@ private:
   void grow_supervoxels(const EdgePoints& edges);
   void find_clusters(const EdgePoints& edges);
   void count_members(std::span<const std::uint32_t> labels, std::size_t clusters);
-  void measure_clusters();
+  void measure_clusters(PointView cloud, std::span<const BeamCount> beams);
   void recognise(FixedVector<Obstacle>& obstacles);
 
   DetectSettings settings_;
@@ -114,6 +117,7 @@ private:
   Clusters clusters_;
   GroundHeight ground_;
   GroundSurface surface_;
+  Solidity solidity_;
   Surroundings surroundings_;
 };
 

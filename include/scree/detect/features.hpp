@@ -7,7 +7,7 @@ namespace scree {
 
 /// What the network is told of a cluster. First F1-F5 of the paper (section 3.2): heights in metres
 /// above the ground, and counts of points. The others are ours and need the ground's surface; they
-/// are 0 without it.
+/// are 0 without it. Those of Solidity are 1 where nothing is known of beams.
 enum Feature : std::size_t {
   mean_height,
   max_height,
@@ -24,6 +24,10 @@ enum Feature : std::size_t {
   cell_points,    ///< mean number of points in its cells
   cell_spread,    ///< mean height between the lowest and the highest point of its cells, metres
   roughness,      ///< of the ground up to 0.6 m around: mean distance of its cells from the surface
+  solid_share,    ///< of its cells: that stop at least 70 % of the beams
+  top_solidity,   ///< of the beams to its cells that reach half its height: the share that ended
+  core_solidity,  ///< upper quartile of Solidity::around() over its cells
+  beam_count,     ///< beams that ended in it
   kFeatures
 };
 inline constexpr std::size_t kPaperFeatures = 5;

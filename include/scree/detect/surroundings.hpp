@@ -5,6 +5,7 @@
 
 #include "scree/detect/clusters.hpp"
 #include "scree/detect/ground_surface.hpp"
+#include "scree/detect/solidity.hpp"
 
 namespace scree {
 
@@ -17,6 +18,8 @@ public:
         visited_(max_cells),
         lowest_(max_cells),
         highest_(max_cells),
+        cells_(max_cells),
+        solidities_(max_cells),
         ground_seen_(4 * max_cells) {}
 
   /// Notes where the ground itself was seen, and in which cells something stands above it or lies
@@ -28,18 +31,21 @@ public:
   /// Sets the features from box_length on.
   /// @param members of the cluster among the points given to build()
   void measure(Cluster& cluster, std::span<const std::uint32_t> members, const EdgePoints& edges,
-               const GroundSurface& surface);
+               const GroundSurface& surface, const Solidity& solidity);
 
 private:
   enum Side : std::uint8_t { above = 1, below = 2 };
 
   std::size_t quarter_at(float x, float y, const GroundSurface& surface) const;
   bool is_amid_ground(float x, float y, const GroundSurface& surface) const;
+  void measure_solidity(Features& features, const Solidity& solidity);
   bool borders_on(std::size_t cell, std::uint8_t side, std::size_t columns) const;
 
   FixedVector<std::uint8_t> sides_;
   FixedVector<std::uint32_t> visited_;     // number of the last cluster that counted the cell
   FixedVector<float> lowest_, highest_;    // of that cluster's heights in it
+  FixedVector<std::uint32_t> cells_;       // of that cluster
+  FixedVector<float> solidities_;          // scratch: of these
   FixedVector<std::uint8_t> ground_seen_;  // in each quarter of a cell, row by row
   std::uint32_t number_ = 0;
 };

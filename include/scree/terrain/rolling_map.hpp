@@ -3,8 +3,10 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "scree/config/settings.hpp"
+#include "scree/core/beam_count.hpp"
 #include "scree/core/fixed_vector.hpp"
 #include "scree/core/point_cloud.hpp"
 #include "scree/core/pose.hpp"
@@ -28,6 +30,8 @@ public:
 
   /// The confirmed points around the robot, in `odom` shifted by -origin().
   const PointCloud& cloud() const { return cloud_; }
+  /// Of each of these points: the beams that came to its voxel.
+  std::span<const BeamCount> beams() const { return beams_; }
   const Eigen::Vector3d& origin() const { return origin_; }
   /// Of a place in `odom`, to the accuracy of the coarse cells in which free space is kept.
   Sight sight(const Eigen::Vector3d& place) const;
@@ -49,6 +53,7 @@ private:
     std::uint16_t hits = 0;    ///< points, saturating
     std::uint16_t sweeps = 0;  ///< that hit it, saturating
     std::uint16_t passed = 0;  ///< beams that went through it since the last hit
+    BeamCount beams;
     std::uint32_t last_sweep = 0;
     std::int64_t seen_ns = 0;                        ///< end of that sweep
     std::uint32_t slot = 0;                          ///< in the index
@@ -78,6 +83,7 @@ private:
   std::size_t mask_;
   FreeSpace free_space_;
   PointCloud cloud_;
+  FixedVector<BeamCount> beams_;
   std::uint32_t sweep_ = 0;
   std::int64_t end_ns_ = 0;
   std::uint64_t dropped_ = 0;

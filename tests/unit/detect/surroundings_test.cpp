@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include "scree/detect/detector.hpp"
 
@@ -25,13 +26,15 @@ PointCloud ground_with(Shape&& shape) {
 }
 
 /// Features of the largest cluster.
-Features features_of(PointView cloud) {
+/// @param beams of each point
+Features features_of(PointView cloud, std::span<const BeamCount> beams = {}) {
   DetectSettings settings = DetectSettings::for_cloud();
   settings.max_points = 40'000;
   settings.max_ground_cells = 1 << 14;
   Detector detector(settings, Network());
   FixedVector<Obstacle> unused(16);
-  detector.detect(cloud, unused);
+  StageTimer timer;
+  detector.detect(cloud, beams, unused, timer);
   const auto clusters = detector.clusters().all();
   EXPECT_FALSE(clusters.empty());
   if (clusters.empty()) return {};
@@ -55,6 +58,36 @@ TEST(Surroundings, LightPassesThroughATuftAndNotThroughARock) {
   EXPECT_LT(rock[cell_spread], 0.01) << "a level top";
   EXPECT_GT(tuft[cell_spread], 0.1) << "blades of 0.08 to 0.38 m in one cell";
   EXPECT_GT(tuft[cell_points], 1.3 * rock[cell_points]);
+}
+
+TEST(Surroundings, MeasuresTheShareOfTheBeamsThatEnded) {
+  const PointCloud cloud = ground_with([](float x, float y, float) {
+    if (!inside(x, y)) return 0.0F;
+    return x < 0 ? 0.5F : 0.2F;
+  });
+  const Features unknown = features_of(cloud);
+  EXPECT_EQ(unknown[solid_share], 1);
+  EXPECT_EQ(unknown[top_solidity], 1);
+  EXPECT_EQ(unknown[core_solidity], 1);
+  EXPECT_EQ(unknown[beam_count], 0);
+
+  // Grass around a rock: the higher half is solid.
+  std::vector<BeamCount> beams;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    beams.push_back(cloud.x[i] < 0 ? BeamCount{100, 0} : BeamCount{100, 300});
+  }
+  const Features half = features_of(cloud, beams);
+  EXPECT_NEAR(half[solid_share], 0.5, 0.1);
+  EXPECT_GT(half[top_solidity], 0.95);
+  EXPECT_GT(half[core_solidity], 0.95);
+  const auto above = std::ranges::count_if(cloud.z, [](float z) { return z > 0; });
+  EXPECT_NEAR(half[beam_count] / (100 * static_cast<float>(above)), 1, 0.05);
+
+  for (BeamCount& count : beams) count = {100, 300};
+  const Features grass = features_of(cloud, beams);
+  EXPECT_EQ(grass[solid_share], 0);
+  EXPECT_NEAR(grass[top_solidity], 0.25, 0.01);
+  EXPECT_NEAR(grass[core_solidity], 0.25, 0.01);
 }
 
 TEST(Surroundings, MeasuresHowUnevenTheGroundAroundIs) {

@@ -142,7 +142,7 @@ TEST_F(TrackerTest, ComesBackWithItsIdWhenItWasOnlyUnseenForAWhile) {
 // A confidence that wavers about a threshold does not make the obstacle come and go.
 TEST_F(TrackerTest, DoesNotFlicker) {
   std::mt19937 random(42);
-  std::uniform_real_distribution<float> wavering(0.25F, 0.75F);
+  std::uniform_real_distribution<float> wavering(0.3F, 0.9F);
   update({at(3, 1)}, 5);
   int changes = 0, raw_changes = 0;
   bool was_listed = true, was_sure = true;

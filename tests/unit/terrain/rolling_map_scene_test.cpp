@@ -7,10 +7,12 @@
 namespace scree {
 namespace {
 
-/// A lidar 1 m above level ground looks ahead; a box stands on the ground there, or not.
+/// A lidar 1 m above level ground looks ahead; a box stands on the ground there, or grass of its
+/// size, or nothing.
 class Scene {
 public:
   bool has_box = true;
+  double blades = 0;  ///< met a metre of way; 0: the box is solid
 
   const RollingMap& map() const { return map_; }
 
@@ -37,6 +39,8 @@ public:
   }
   struct Counts {
     int box = 0, ground = 0;
+    double ended = 0, passed = 0;  ///< beams that came to the box
+    double solidity() const { return ended / (ended + passed); }
   };
   Counts counts() const {
     Counts counts;
@@ -44,13 +48,16 @@ public:
       const float x = map_.cloud().x[i], y = map_.cloud().y[i], z = map_.cloud().z[i];
       const bool is_box = z > 0.08F && x > 2.8F && x < 3.6F && std::abs(y) < 0.6F;
       (is_box ? counts.box : counts.ground) += 1;
+      if (!is_box) continue;
+      counts.ended += map_.beams()[i].ended;
+      counts.passed += map_.beams()[i].passed;
     }
     return counts;
   }
 
 private:
   // The box: its face 3 m ahead, 1 m wide, 0.5 m high, 0.5 m deep.
-  static double cast(const Eigen::Vector3d& along, bool has_box) {
+  double cast(const Eigen::Vector3d& along) {
     double range = -kLidar.z() / along.z();
     if (!has_box) return range;
     const auto hits = [&](double way) {
@@ -58,16 +65,18 @@ private:
       return std::abs(at.y()) < 0.5 && at.z() < 0.5 + 1e-9 && at.x() > 3 - 1e-9 && at.x() < 3.5;
     };
     for (const double way : {3 / along.x(), (0.5 - kLidar.z()) / along.z()}) {
-      if (hits(way)) range = std::min(range, way);
+      if (!hits(way)) continue;
+      const double blade = blades > 0 ? way - std::log(1 - chance_(random_)) / blades : way;
+      if (blade == way || blade < 3.5 / along.x()) range = std::min(range, blade);
     }
     return range;
   }
-  double cast(const Eigen::Vector3d& along) const { return cast(along, has_box); }
 
   inline static const Eigen::Vector3d kLidar{0, 0, 1};
   RollingMap map_{MapSettings{.max_voxels = 1 << 17}};
   DeskewedSweep sweep_{1 << 14};
   std::mt19937 random_{31};
+  std::uniform_real_distribution<double> chance_{0, 1};
   std::int64_t now_ns_ = 1'598'612'523'000'000'000;
 };
 
@@ -90,6 +99,16 @@ TEST(RollingMapScene, WhatMovedAwayIsForgottenAndWhatStandsStays) {
   EXPECT_LT(without.box, 0.05 * with.box);
   EXPECT_GT(without.ground, with.ground) << "also where the box stood, and behind it";
   EXPECT_EQ(scene.map().sight({3, 0, 0.3}), Sight::empty);
+}
+
+TEST(RollingMapScene, CountsTheBeamsThatGrassLetsPass) {
+  Scene box, sparse, dense;
+  sparse.blades = 2;
+  dense.blades = 8;
+  for (Scene* scene : {&box, &sparse, &dense}) scene->look(20);
+  EXPECT_GT(box.counts().solidity(), 0.9);
+  EXPECT_LT(dense.counts().solidity(), 0.75 * box.counts().solidity());
+  EXPECT_LT(sparse.counts().solidity(), 0.5 * dense.counts().solidity());
 }
 
 TEST(RollingMapScene, TellsUnseenFromEmpty) {

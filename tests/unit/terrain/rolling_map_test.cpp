@@ -174,6 +174,34 @@ TEST_F(RollingMapTest, StaysConfirmedHoweverOftenItIsSeen) {
   }
 }
 
+TEST_F(RollingMapTest, CountsTheBeamsThatEndedInAVoxelAndThoseThatPassedIt) {
+  const Eigen::Vector3d lidar(0, 0, 1), place(3, 0.02, 0.02);
+  const auto along = (place - lidar).normalized();
+  const Eigen::Vector3d beside(0, 0.03, 0);
+  const auto beams_of = [&](std::size_t sweeps, const Eigen::Vector3d& farther) {
+    map_ = RollingMap(settings_);
+    for (std::size_t i = 0; i < sweeps; ++i) {
+      see(place);
+      see(farther);
+      end_sweep();
+    }
+    for (std::size_t i = 0; i < map_.cloud().size(); ++i) {
+      if ((confirmed(i) - place).norm() < 0.01) return map_.beams()[i];
+    }
+    ADD_FAILURE() << "the place is not in the map";
+    return BeamCount();
+  };
+  // One beam of four is followed, and counts for four.
+  const BeamCount through = beams_of(40, place + 0.5 * along);
+  EXPECT_EQ(through.ended, 40);
+  EXPECT_EQ(through.passed, 40);
+  EXPECT_EQ(beams_of(40, place + 0.08 * along).passed, 0) << "on the same surface";
+  EXPECT_EQ(beams_of(40, place + 0.5 * along + beside).passed, 0) << "past it";
+  const BeamCount many = beams_of(200'000, place + 0.5 * along);
+  EXPECT_GT(many.ended, 10'000);
+  EXPECT_NEAR(static_cast<double>(many.passed) / many.ended, 1, 1e-3) << "fade alike";
+}
+
 TEST_F(RollingMapTest, DropsAndCountsWhatFindsNoRoomAndRecovers) {
   map_ = RollingMap({.voxel = kVoxel, .reach = 7, .max_voxels = 500});
   const auto look = [&](double x) {

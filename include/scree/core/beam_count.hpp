@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstdint>
+
+namespace scree {
+
+/// What became of the beams that came to a place. Both are weights that fade alike, not exact
+/// counts: only their ratio counts.
+struct BeamCount {
+  std::uint16_t ended = 0;   ///< there
+  std::uint16_t passed = 0;  ///< through it, and ended farther on
+};
+
+}  // namespace scree

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "scree/core/beam_count.hpp"
+#include "scree/core/fixed_vector.hpp"
+#include "scree/core/point_cloud.hpp"
+#include "scree/detect/ground_surface.hpp"
+
+namespace scree {
+
+/// Of the beams that came to what stands above the ground the share that ended there, on the raster
+/// of the ground's surface. Rocks stop them all; between blades of grass most go on.
+class Solidity {
+public:
+  explicit Solidity(std::size_t max_cells)
+      : ended_(max_cells), passed_(max_cells), around_(max_cells) {}
+
+  /// Counts the beams of the points that stand between two heights above the surface, metres.
+  /// @param beams of each point of the cloud; empty where nothing is known of them
+  void build(PointView cloud, std::span<const BeamCount> beams, const GroundSurface& surface,
+             float lowest, float highest);
+
+  // Of a cell of the raster; without any beam all is solid.
+  float ended(std::size_t cell) const { return ended_[cell]; }
+  float passed(std::size_t cell) const { return passed_[cell]; }
+  float of(std::size_t cell) const { return share(ended_[cell], passed_[cell]); }
+  /// Of the cells up to two cells away, too.
+  float around(std::size_t cell) const { return around_[cell]; }
+
+  /// One more beam ended than was counted: few beams say little.
+  static float share(float ended, float passed) { return (ended + 1) / (ended + passed + 1); }
+
+private:
+  void spread(std::size_t columns);
+
+  FixedVector<float> ended_, passed_, around_;
+};
+
+}  // namespace scree

@@ -1,0 +1,101 @@
+#include "scree/detect/solidity.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+namespace scree {
+namespace {
+
+constexpr std::size_t kPoints = 20'000, kCells = 1 << 12;
+constexpr float kCell = 0.1F, kLowest = 0.06F, kHighest = 2;
+
+/// Level ground with a rock and a branch high above it, and beams of any number at each point.
+class SolidityTest : public testing::Test {
+protected:
+  SolidityTest() {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<float> place(-2, 2);
+    std::uniform_int_distribution<int> count(0, 50);
+    while (cloud_.size() < kPoints) {
+      const float x = place(random), y = place(random);
+      float z = std::hypot(x, y) < 0.5F ? 0.3F : 0.0F;
+      if (x > 1.5F && y > 1.5F) z = 2.5F;
+      cloud_.push_back(x, y, z, 0);
+      beams_.push_back(
+          {static_cast<std::uint16_t>(count(random)), static_cast<std::uint16_t>(count(random))});
+    }
+    surface_.build(cloud_, {.cell_size = kCell,
+                            .cell_points = 1,
+                            .max_slope = 0.34F,
+                            .tolerance = 0.1F,
+                            .trend_reach = 0});
+  }
+
+  std::size_t cells() const { return surface_.columns() * surface_.rows(); }
+  std::size_t middle() const { return surface_.cell_at(0, 0); }
+
+  PointCloud cloud_{kPoints};
+  std::vector<BeamCount> beams_;
+  GroundSurface surface_{kPoints, kCells};
+  Solidity solidity_{kCells};
+};
+
+TEST_F(SolidityTest, CountsWhatStandsOnTheGroundCellByCell) {
+  solidity_.build(cloud_, beams_, surface_, kLowest, kHighest);
+  std::vector<float> ended(cells()), passed(cells());
+  for (std::size_t i = 0; i < cloud_.size(); ++i) {
+    if (cloud_.z[i] != 0.3F) continue;
+    ended[surface_.cell_at(cloud_.x[i], cloud_.y[i])] += beams_[i].ended;
+    passed[surface_.cell_at(cloud_.x[i], cloud_.y[i])] += beams_[i].passed;
+  }
+  int counted = 0;
+  for (std::size_t cell = 0; cell < cells(); ++cell) {
+    ASSERT_EQ(solidity_.ended(cell), ended[cell]);
+    ASSERT_EQ(solidity_.passed(cell), passed[cell]);
+    if (ended[cell] == 0) {
+      ASSERT_EQ(solidity_.around(cell), 1) << "nothing stands there";
+      continue;
+    }
+    ++counted;
+    float near_ended = 0, near_passed = 0;
+    const auto column = static_cast<int>(cell % surface_.columns());
+    const auto row = static_cast<int>(cell / surface_.columns());
+    for (std::size_t other = 0; other < cells(); ++other) {
+      if (std::abs(static_cast<int>(other % surface_.columns()) - column) > 2) continue;
+      if (std::abs(static_cast<int>(other / surface_.columns()) - row) > 2) continue;
+      near_ended += ended[other];
+      near_passed += passed[other];
+    }
+    ASSERT_FLOAT_EQ(solidity_.around(cell), (near_ended + 1) / (near_ended + near_passed + 1));
+  }
+  EXPECT_GT(counted, 60) << "cells of the rock";
+}
+
+TEST_F(SolidityTest, WithoutBeamsAllIsSolid) {
+  solidity_.build(cloud_, beams_, surface_, kLowest, kHighest);
+  EXPECT_LT(solidity_.around(middle()), 0.6);
+  solidity_.build(cloud_, {}, surface_, kLowest, kHighest);
+  EXPECT_EQ(solidity_.around(middle()), 1);
+  EXPECT_EQ(solidity_.of(middle()), 1);
+  EXPECT_EQ(solidity_.ended(middle()), 0);
+}
+
+TEST_F(SolidityTest, TakesPointsThatAreNoNumbers) {
+  solidity_.build(cloud_, beams_, surface_, kLowest, kHighest);
+  const float before = solidity_.ended(middle());
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  for (std::size_t i = 0; i < 3; ++i) beams_[i] = {50, 0};
+  cloud_.x[0] = kNan;
+  cloud_.y[1] = -kInfinity;
+  cloud_.z[2] = kNan;
+  solidity_.build(cloud_, beams_, surface_, kLowest, kHighest);
+  EXPECT_NEAR(solidity_.ended(middle()), before, 150);
+}
+
+}  // namespace
+}  // namespace scree
