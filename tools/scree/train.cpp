@@ -181,7 +181,9 @@ void add_train(CLI::App& app) {
   command->add_option("--restarts", options->learn.restarts, "starts from other weights")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  command->add_option("--counts", options->counts, "how counts (F4, F5, beam_count) enter: raw or log1p")
+  command
+      ->add_option("--counts", options->counts,
+                   "how counts (F4, F5, beam_count) enter: raw or log1p")
       ->transform(CLI::CheckedTransformer(kForms))
       ->default_str("log1p");
   command->callback([options] { run(*options); });
