@@ -16,10 +16,11 @@ constexpr float kSeenThrough = 4;
 constexpr std::uint16_t kMostPassed = 8;
 
 /// Both fade before one of them overflows.
-void count(std::uint16_t& which, std::uint16_t more, BeamCount& beams) {
+void count(BeamCount& beams, int ended, int passed) {
   constexpr std::uint16_t kMost = 60'000;
-  which = static_cast<std::uint16_t>(which + more);
-  if (which < kMost) return;
+  beams.ended = static_cast<std::uint16_t>(beams.ended + ended);
+  beams.passed = static_cast<std::uint16_t>(beams.passed + passed);
+  if (std::max(beams.ended, beams.passed) < kMost) return;
   beams.ended /= 2;
   beams.passed /= 2;
 }
@@ -152,7 +153,7 @@ void RollingMap::add(const DeskewedSweep& sweep, const Pose& pose, std::int64_t 
     voxel->last_sweep = sweep_;
     voxel->seen_ns = end_ns;
     voxel->passed = 0;
-    count(voxel->beams.ended, 1, voxel->beams);
+    count(voxel->beams, 1, 0);
   }
   see_through(sweep, rotation, translation);
   forget(pose);
@@ -190,7 +191,7 @@ void RollingMap::see_through(const DeskewedSweep& sweep, const Eigen::Matrix3f& 
       Voxel& voxel = voxels_[number - 1];
       const Eigen::Vector3f off = voxel.mean - from;
       const float distance = (off - off.dot(along) * along).norm();
-      if (distance < through) count(voxel.beams.passed, kEvery, voxel.beams);
+      if (distance < through) count(voxel.beams, 0, kEvery);
       if (distance < near && way < end && voxel.last_sweep != sweep_) ++voxel.passed;
     }
   }

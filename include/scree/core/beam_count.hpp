@@ -4,8 +4,7 @@
 
 namespace scree {
 
-/// What became of the beams that came to a place. Both are weights that fade alike, not exact
-/// counts: only their ratio counts.
+/// What became of the beams that came to a place. Where they are many, both fade alike.
 struct BeamCount {
   std::uint16_t ended = 0;   ///< there
   std::uint16_t passed = 0;  ///< through it, and ended farther on

@@ -7,7 +7,7 @@ namespace scree {
 
 /// What the network is told of a cluster. First F1-F5 of the paper (section 3.2): heights in metres
 /// above the ground, and counts of points. The others are ours and need the ground's surface; they
-/// are 0 without it. Those of Solidity are 1 where nothing is known of beams.
+/// are 0 without it. Where nothing is known of beams all is solid.
 enum Feature : std::size_t {
   mean_height,
   max_height,

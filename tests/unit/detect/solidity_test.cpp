@@ -86,15 +86,24 @@ TEST_F(SolidityTest, WithoutBeamsAllIsSolid) {
 
 TEST_F(SolidityTest, TakesPointsThatAreNoNumbers) {
   solidity_.build(cloud_, beams_, surface_, kLowest, kHighest);
-  const float before = solidity_.ended(middle());
+  const auto total = [&] {
+    float sum = 0;
+    for (std::size_t cell = 0; cell < cells(); ++cell) sum += solidity_.ended(cell);
+    return sum;
+  };
+  const float before = total();
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  for (std::size_t i = 0; i < 3; ++i) beams_[i] = {50, 0};
-  cloud_.x[0] = kNan;
-  cloud_.y[1] = -kInfinity;
-  cloud_.z[2] = kNan;
+  std::vector<std::size_t> rock;
+  for (std::size_t i = 0; rock.size() < 3; ++i) {
+    if (cloud_.z[i] == 0.3F) rock.push_back(i);
+  }
+  cloud_.x[rock[0]] = kNan;
+  cloud_.y[rock[1]] = -kInfinity;
+  cloud_.z[rock[2]] = kNan;
   solidity_.build(cloud_, beams_, surface_, kLowest, kHighest);
-  EXPECT_NEAR(solidity_.ended(middle()), before, 150);
+  EXPECT_EQ(total(), before - static_cast<float>(beams_[rock[0]].ended + beams_[rock[1]].ended +
+                                                 beams_[rock[2]].ended));
 }
 
 }  // namespace
