@@ -37,27 +37,6 @@ double distance_between(const Obstacle& a, const Obstacle& b) {
   return least;
 }
 
-bool is_piece(const Obstacle& whole, const Obstacle& piece) {
-  if (whole.kind != piece.kind) return false;
-  constexpr double kFarthest = 3;  // metres
-  const double distance = distance_between(whole, piece);
-  if (distance > kFarthest) return false;
-
-  constexpr double kBeside = 0.3;
-  constexpr std::uint32_t kLarger = 3;
-  if (distance_to_box(whole, piece.center) <= kBeside && whole.points > kLarger * piece.points) {
-    return true;
-  }
-  constexpr double kNear = 0.5, kSliver = 0.15;
-  const bool is_sliver = piece.extent.y() <= kSliver;
-  if (distance <= kNear && (is_sliver || piece.kind == ObstacleKind::negative)) return true;
-
-  // Parts of a wall lie on one line.
-  constexpr double kThin = 0.12, kInLine = 0.99;
-  const Eigen::Vector2d to = in_box(whole, piece.center);
-  return whole.extent.y() <= kThin && std::abs(to.x()) >= kInLine * to.norm();
-}
-
 /// The middle and the size of what holds two intervals.
 std::pair<double, double> hull(double low_a, double high_a, double low_b, double high_b) {
   const double low = std::min(low_a, low_b), high = std::max(high_a, high_b);
@@ -90,6 +69,42 @@ void join(Obstacle& whole, const Obstacle& piece) {
   whole.id = std::min(whole.id, piece.id);
 }
 
+/// Whether the box of both holds little more than the two, and not the ground in the corner between
+/// a ditch and a pit beside its end.
+bool fill_a_box(const Obstacle& a, const Obstacle& b) {
+  constexpr double kMargin = 0.2;  // metres around each in all
+  const auto area = [](const Obstacle& box, double margin) {
+    return (box.extent.x() + margin) * (box.extent.y() + margin);
+  };
+  Obstacle both = a;
+  join(both, b);
+  return area(both, 0) <= area(a, kMargin) + area(b, kMargin);
+}
+
+bool is_piece(const Obstacle& whole, const Obstacle& piece) {
+  if (whole.kind != piece.kind) return false;
+  constexpr double kFarthest = 3;  // metres
+  const double distance = distance_between(whole, piece);
+  if (distance > kFarthest) return false;
+
+  constexpr double kBeside = 0.3;
+  constexpr std::uint32_t kLarger = 3;
+  if (distance_to_box(whole, piece.center) <= kBeside && whole.points > kLarger * piece.points) {
+    return true;
+  }
+  constexpr double kNear = 0.5, kSliver = 0.15;
+  const bool is_sliver = piece.extent.y() <= kSliver;
+  if (distance <= kNear && is_sliver) return true;
+  if (distance <= kNear && piece.kind == ObstacleKind::negative && fill_a_box(whole, piece)) {
+    return true;
+  }
+
+  // Parts of a wall lie on one line.
+  constexpr double kThin = 0.12, kInLine = 0.99;
+  const Eigen::Vector2d to = in_box(whole, piece.center);
+  return whole.extent.y() <= kThin && std::abs(to.x()) >= kInLine * to.norm();
+}
+
 }  // namespace
 
 double distance_to_box(const Obstacle& obstacle, const Eigen::Vector3d& place) {
@@ -112,6 +127,20 @@ void join_pieces(FixedVector<Obstacle>& obstacles) {
     } else {
       obstacles[kept++] = obstacle;
     }
+  }
+  obstacles.resize(kept);
+}
+
+void remove_shadows(FixedVector<Obstacle>& obstacles) {
+  const auto is_shadow = [&](const Obstacle& hole) {
+    return hole.kind == ObstacleKind::negative &&
+           std::ranges::any_of(obstacles, [&](const Obstacle& rock) {
+             return rock.kind == ObstacleKind::positive && distance_to_box(rock, hole.center) <= 0;
+           });
+  };
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    if (!is_shadow(obstacles[i])) std::swap(obstacles[kept++], obstacles[i]);
   }
   obstacles.resize(kept);
 }

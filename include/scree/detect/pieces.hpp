@@ -14,4 +14,8 @@ double distance_to_box(const Obstacle& obstacle, const Eigen::Vector3d& place);
 /// their points, most first.
 void join_pieces(FixedVector<Obstacle>& obstacles);
 
+/// Takes out each hole whose middle lies in the box of a rock: it is what the rock hides. The order
+/// stays.
+void remove_shadows(FixedVector<Obstacle>& obstacles);
+
 }  // namespace scree

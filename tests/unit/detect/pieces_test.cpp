@@ -80,6 +80,16 @@ TEST(JoinPieces, HolesBesideOneAnotherAreOne) {
       << "a hole at a rock's foot";
 }
 
+TEST(JoinPieces, ADitchAndAPitBesideItsEndStayTwo) {
+  constexpr auto kHole = ObstacleKind::negative;
+  EXPECT_EQ(joined({box(0, 0, 4, 1, 300, kHole), box(1.5, 1.6, 1.5, 1.5, 90, kHole)}).size(), 2U)
+      << "one box of both would hold 3 square metres of ground";
+  EXPECT_EQ(joined({box(0, 0, 4, 1, 300, kHole), box(3.2, 0, 2, 0.9, 90, kHole)}).size(), 1U)
+      << "the ditch goes on";
+  EXPECT_EQ(joined({box(0, 0, 4, 0.1, 300, kHole), box(0, 0.5, 4, 0.1, 90, kHole)}).size(), 1U)
+      << "the two walls of one ditch";
+}
+
 TEST(JoinPieces, PartsOfAWallAreOne) {
   EXPECT_EQ(joined({box(3, 1, 2, 0.1, 100), box(6, 1.1, 1, 0.3, 40)}).size(), 1U);
   EXPECT_EQ(joined({box(3, 1, 2, 0.1, 100), box(6, 2, 1, 0.3, 40)}).size(), 2U)
@@ -123,6 +133,19 @@ TEST(JoinPieces, LosesNothing) {
   }
   EXPECT_GT(fewer, 200U);
   EXPECT_EQ(joined({}).size(), 0U);
+}
+
+TEST(RemoveShadows, AHoleWithinARockIsNone) {
+  constexpr auto kHole = ObstacleKind::negative;
+  const Obstacle rock = box(3, 1, 1, 0.8, 50), within = box(3.4, 1.3, 2, 1, 900, kHole),
+                 beside = box(3.6, 1, 0.6, 0.3, 40, kHole), inner = box(3.1, 1, 0.3, 0.2, 9);
+  FixedVector<Obstacle> list(8);
+  for (const Obstacle& obstacle : {within, rock, beside, inner}) list.push_back(obstacle);
+  remove_shadows(list);
+  ASSERT_EQ(list.size(), 3U);
+  EXPECT_EQ(list[0].id, rock.id);
+  EXPECT_EQ(list[1].id, beside.id) << "its middle lies on free ground";
+  EXPECT_EQ(list[2].id, inner.id) << "a rock in a rock";
 }
 
 }  // namespace

@@ -191,7 +191,7 @@ TEST_F(TrackerTest, TheKindIsThatOfTheEvidenceInAll) {
 }
 
 TEST_F(TrackerTest, AHoleBesideAMoundIsAnother) {
-  update({at(3, 1), hole_at(3.1, 1)}, 4);
+  update({at(3, 1), hole_at(3.4, 1.1)}, 4);
   ASSERT_EQ(list_.size(), 2U);
   EXPECT_NE(list_[0].id, list_[1].id);
   EXPECT_NE(list_[0].kind, list_[1].kind);
