@@ -31,13 +31,13 @@ BodyRegions::BodyRegions(std::size_t max_points, std::size_t max_cells)
       labels_(max_points) {}
 
 void BodyRegions::label(const EdgePoints& bodies, const GroundSurface& surface,
-                        const BodyRegionSettings& settings) {
+                        const Solidity& solidity, const BodyRegionSettings& settings) {
   columns_ = surface.columns();
   labels_.assign(bodies.size(), kNoLabel);
   count_ = 0;
   const auto steps = static_cast<int>(std::lround(settings.tolerance / 2 / surface.cell_size()));
   for (const Side side : {Side::above, Side::below}) {
-    mark(bodies, side, surface);
+    mark(bodies, side, surface, solidity);
     for (int step = 0; step < steps; ++step) {
       // To the sides and to the corners by turns: nearly a circle. Tops fall off in even steps.
       const auto left = static_cast<float>(steps - step);
@@ -48,7 +48,8 @@ void BodyRegions::label(const EdgePoints& bodies, const GroundSurface& surface,
   }
 }
 
-void BodyRegions::mark(const EdgePoints& bodies, Side side, const GroundSurface& surface) {
+void BodyRegions::mark(const EdgePoints& bodies, Side side, const GroundSurface& surface,
+                       const Solidity& solidity) {
   const std::size_t cells = columns_ * surface.rows();
   state_.resize(cells);
   for (std::size_t cell = 0; cell < cells; ++cell) {
@@ -61,6 +62,10 @@ void BodyRegions::mark(const EdgePoints& bodies, Side side, const GroundSurface&
     state_[cell] = body;
     // Holes have no tops: their floors are seldom seen, and what is seen of a wall has any depth.
     top_[cell] = std::max(top_[cell], bodies.height[i]);
+  }
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    const float share = solidity.of(cell);
+    top_[cell] *= share * share;
   }
 }
 
@@ -88,7 +93,7 @@ void BodyRegions::grow(bool diagonally, float share) {
 /// Lets the regions rise out of a falling flood: a cell joins those that it touches, and where two
 /// meet they become one unless both rise well above that place.
 void BodyRegions::join(float saddle) {
-  constexpr float kHighest = 65, kStep = 0.001F, kLeastRise = 0.1F;  // metres
+  constexpr float kHighest = 65, kStep = 0.001F, kLeastRise = 0.06F;  // metres
   order_.clear();
   for (std::size_t cell = 0; cell < state_.size(); ++cell) {
     if (state_[cell] != body) continue;

@@ -83,6 +83,7 @@ void Detector::detect(PointView cloud, std::span<const BeamCount> beams,
   thin(cloud);
   timer.done(Stage::voxel_grid);
   choose_candidates();
+  weigh_beams(cloud, beams);
   timer.done(Stage::surface);
   find_edges();
   timer.done(Stage::gradient);
@@ -95,7 +96,7 @@ void Detector::detect(PointView cloud, std::span<const BeamCount> beams,
   }
   find_clusters(edges);
   timer.done(Stage::clusters);
-  measure_clusters(cloud, beams);
+  measure_clusters();
   timer.done(Stage::features);
   recognise(obstacles);
   timer.done(Stage::network);
@@ -129,6 +130,13 @@ void Detector::choose_candidates() {
         std::abs(height_[i]) >= least && !surface_.is_ground(points.x[i], points.y[i]);
     is_candidate_[i] = is_body ? 1 : 0;
   }
+}
+
+void Detector::weigh_beams(PointView cloud, std::span<const BeamCount> beams) {
+  if (!settings_.uses_surface()) return;
+  const float highest = settings_.clearance > 0 ? static_cast<float>(settings_.clearance)
+                                                : std::numeric_limits<float>::infinity();
+  solidity_.build(cloud, beams, surface_, static_cast<float>(settings_.body_height), highest);
 }
 
 void Detector::find_edges() {
@@ -212,7 +220,7 @@ void Detector::find_clusters(const EdgePoints& edges) {
     });
     count_members(euclidean_.labels(), euclidean_.count());
   } else if (uses_regions()) {
-    regions_.label(edges, surface_, {tolerance, static_cast<float>(settings_.saddle)});
+    regions_.label(edges, surface_, solidity_, {tolerance, static_cast<float>(settings_.saddle)});
     std::ranges::copy(regions_.labels(), labels_.begin());
     count_members(labels_, regions_.count());
   } else {
@@ -230,13 +238,10 @@ void Detector::count_members(std::span<const std::uint32_t> labels, std::size_t 
   for (const std::uint32_t label : labels) ++sizes_[label];
 }
 
-void Detector::measure_clusters(PointView cloud, std::span<const BeamCount> beams) {
+void Detector::measure_clusters() {
   EdgePoints& edges = thins_edges() ? kept_ : edges_;
   if (settings_.uses_surface()) {
     surroundings_.build(cells_.points(), height_, edges, surface_);
-    const float highest = settings_.clearance > 0 ? static_cast<float>(settings_.clearance)
-                                                  : std::numeric_limits<float>::infinity();
-    solidity_.build(cloud, beams, surface_, static_cast<float>(settings_.body_height), highest);
   }
   for (Cluster& cluster : clusters_.all()) {
     const auto members = clusters_.members(cluster);

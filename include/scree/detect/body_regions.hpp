@@ -7,6 +7,7 @@
 #include "scree/detect/edge_points.hpp"
 #include "scree/detect/ground_surface.hpp"
 #include "scree/detect/key_sort.hpp"
+#include "scree/detect/solidity.hpp"
 
 namespace scree {
 
@@ -19,14 +20,16 @@ struct BodyRegionSettings {
 /// raster. A cell that was not seen counts as what was seen nearest to it, up to half a tolerance
 /// away; cells of bodies that then touch belong together. So shadows and the gaps between rings
 /// part nothing, and ground that was seen between two rocks does. Rocks that touch are parted by
-/// the watershed of their heights (Vincent and Soille, 1991), merged by the tops' prominence.
+/// the watershed of their heights (Vincent and Soille, 1991), merged by the tops' prominence. What
+/// lets light through counts as lower than it is, so that a rock rises out of the grass around it.
 class BodyRegions {
 public:
   BodyRegions(std::size_t max_points, std::size_t max_cells);
 
   /// @param bodies above (height > 0) or below the surface; all other points of the cloud that
   /// `surface` was built from count as seen ground
-  void label(const EdgePoints& bodies, const GroundSurface& surface,
+  /// @param solidity on the same raster
+  void label(const EdgePoints& bodies, const GroundSurface& surface, const Solidity& solidity,
              const BodyRegionSettings& settings);
 
   /// Region of each point, numbered from 0.
@@ -37,14 +40,15 @@ private:
   enum State : std::uint8_t { unseen, clear, body };
   enum class Side : std::uint8_t { above, below };
 
-  void mark(const EdgePoints& bodies, Side side, const GroundSurface& surface);
+  void mark(const EdgePoints& bodies, Side side, const GroundSurface& surface,
+            const Solidity& solidity);
   void grow(bool diagonally, float share);
   void join(float saddle);
   void number(const EdgePoints& bodies, Side side, const GroundSurface& surface);
 
   std::size_t columns_ = 0;
   FixedVector<State> state_, grown_;
-  FixedVector<float> top_, grown_top_;  // of the bodies in a cell, metres above the surface
+  FixedVector<float> top_, grown_top_;  // of the bodies in a cell, metres, weighed by solidity
   KeySort order_;                       // cells of bodies, the highest first
   FixedVector<std::uint32_t> parent_;   // union-find over them; a root is its region's top
   FixedVector<std::uint32_t> number_;   // of the region whose root a cell is

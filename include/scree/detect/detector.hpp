@@ -80,6 +80,7 @@ public:
 private:
   void thin(PointView cloud);
   void choose_candidates();
+  void weigh_beams(PointView cloud, std::span<const BeamCount> beams);
   void find_edges();
   bool uses_regions() const { return settings_.cluster_method == ClusterMethod::regions; }
   bool thins_edges() const {
@@ -91,7 +92,7 @@ private:
   void grow_supervoxels(const EdgePoints& edges);
   void find_clusters(const EdgePoints& edges);
   void count_members(std::span<const std::uint32_t> labels, std::size_t clusters);
-  void measure_clusters(PointView cloud, std::span<const BeamCount> beams);
+  void measure_clusters();
   void recognise(FixedVector<Obstacle>& obstacles);
 
   DetectSettings settings_;

@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <set>
+#include <vector>
 
 #include "scree/detect/detector.hpp"
 #include "scree/detect/euclidean_clusters.hpp"
@@ -20,8 +21,10 @@ class BodyRegionsTest : public ::testing::Test {
 protected:
   using Height = std::function<float(float x, float y)>;  // NaN: not seen
 
-  void look_at(const Height& height) {
+  /// @param beams at a place; none: nothing is known of them
+  void look_at(const Height& height, const std::function<BeamCount(float x, float y)>& beams = {}) {
     cloud_.clear();
+    beams_.clear();
     bodies_.clear();
     constexpr float kStep = 0.04F, kReach = 3;
     for (float y = -kReach; y < kReach; y += kStep) {
@@ -29,11 +32,13 @@ protected:
         const float z = height(x, y);
         if (std::isnan(z)) continue;
         cloud_.push_back(x, y, z, 0);
+        if (beams) beams_.push_back(beams(x, y));
         if (std::abs(z) >= kBody) bodies_.push_back(cloud_, cloud_.size() - 1, 0, 0, z);
       }
     }
     surface_.build(cloud_, surface_settings(DetectSettings::for_map()));
-    regions_.label(bodies_, surface_, {kTolerance, kSaddle});
+    solidity_.build(cloud_, beams_, surface_, kBody, 2);
+    regions_.label(bodies_, surface_, solidity_, {kTolerance, kSaddle});
   }
 
   std::uint32_t label_at(float x, float y) const {
@@ -50,8 +55,10 @@ protected:
   }
 
   PointCloud cloud_{1 << 16};
+  std::vector<BeamCount> beams_;
   EdgePoints bodies_{1 << 16};
   GroundSurface surface_{1 << 16, 1 << 16};
+  Solidity solidity_{1 << 16};
   BodyRegions regions_{1 << 16, 1 << 16};
 };
 
@@ -91,6 +98,25 @@ TEST_F(BodyRegionsTest, RocksThatTouchArePartedAtTheSaddle) {
   EXPECT_NE(label_at(-0.5F, 0), label_at(0.5F, 0));
   look_at(two_tops(0.3F));
   EXPECT_EQ(regions_.count(), 1U) << "the saddle is higher than its share of the lower top";
+}
+
+TEST_F(BodyRegionsTest, RocksRiseOutOfTheGrassThatJoinsThem) {
+  const auto is_rock = [](float x, float y) {
+    return rock(x, y, -0.5F, 0.3F, 0.3F) + rock(x, y, 0.5F, 0.3F, 0.3F) > 0;
+  };
+  const auto height = [&](float x, float y) {
+    if (is_rock(x, y)) return 0.3F;
+    return std::abs(x) < 1 && std::abs(y) < 0.4F ? 0.25F : 0.0F;
+  };
+  look_at(height);
+  EXPECT_EQ(regions_.count(), 1U) << "nothing is known of the beams";
+  look_at(height, [](float, float) { return BeamCount{20, 0}; });
+  EXPECT_EQ(regions_.count(), 1U) << "a wall between them";
+  look_at(height, [&](float x, float y) {
+    return is_rock(x, y) ? BeamCount{20, 0} : BeamCount{20, 40};
+  });
+  EXPECT_EQ(regions_.count(), 2U);
+  EXPECT_NE(label_at(-0.5F, 0), label_at(0.5F, 0));
 }
 
 TEST_F(BodyRegionsTest, ALowRidgeOfUnevenHeightStaysWhole) {
