@@ -61,11 +61,8 @@ void BodyRegions::mark(const EdgePoints& bodies, Side side, const GroundSurface&
     const std::size_t cell = surface.cell_at(bodies.points.x[i], bodies.points.y[i]);
     state_[cell] = body;
     // Holes have no tops: their floors are seldom seen, and what is seen of a wall has any depth.
-    top_[cell] = std::max(top_[cell], bodies.height[i]);
-  }
-  for (std::size_t cell = 0; cell < cells; ++cell) {
     const float share = solidity.of(cell);
-    top_[cell] *= share * share;
+    top_[cell] = std::max(top_[cell], bodies.height[i] * (share * share));
   }
 }
 

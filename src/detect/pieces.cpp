@@ -94,10 +94,8 @@ bool is_piece(const Obstacle& whole, const Obstacle& piece) {
   }
   constexpr double kNear = 0.5, kSliver = 0.15;
   const bool is_sliver = piece.extent.y() <= kSliver;
-  if (distance <= kNear && is_sliver) return true;
-  if (distance <= kNear && piece.kind == ObstacleKind::negative && fill_a_box(whole, piece)) {
-    return true;
-  }
+  const bool is_hole = piece.kind == ObstacleKind::negative;
+  if (distance <= kNear && (is_sliver || (is_hole && fill_a_box(whole, piece)))) return true;
 
   // Parts of a wall lie on one line.
   constexpr double kThin = 0.12, kInLine = 0.99;
@@ -139,6 +137,7 @@ void remove_shadows(FixedVector<Obstacle>& obstacles) {
            });
   };
   std::size_t kept = 0;
+  // Swapped, not moved: no rock may be missing from the list while it is asked.
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     if (!is_shadow(obstacles[i])) std::swap(obstacles[kept++], obstacles[i]);
   }
