@@ -86,7 +86,7 @@ void for_each_detect_key(std::string_view table, Detect& detect, Visit&& visit) 
       "ground parts them, unseen ground does not");
   key("saddle", detect.saddle, "", 0, 1,
       "two tops of a region are two bodies where the saddle between them is lower than this share "
-      "of the lower top; 0: never");
+      "of the lower top, heights weighed by the beams that end there; 0: never");
   key("voxel_size", detect.voxel_size, "m", 0.001, 10, "voxels that super-voxels are made of");
   key("seed_distance", detect.seed_distance, "m", 0.001, 10,
       "Rseed: grid of the super-voxels' seeds; the paper's 0.05 needs a far denser cloud");
