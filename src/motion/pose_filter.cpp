@@ -45,6 +45,18 @@ Eigen::Vector3d tilt_of(const Eigen::Quaterniond& frame) {
   return {up.y(), -up.x(), 0};
 }
 
+/// As the IMU says, rad.
+double yawed_in(const MotionStep& step) {
+  return std::remainder(yaw_of(step.attitude) - yaw_of(step.begin_attitude), 2 * std::numbers::pi);
+}
+
+bool is_still(const MotionStep& step) {
+  constexpr double kMostWay = 0.002;  // metres a step: no more than a count or two of the wheel
+  constexpr double kMostTurn = 0.01;  // rad/s of yaw: an IMU drifts less, a robot turns faster
+  return step.knows_attitude && step.knows_distance && std::abs(step.distance) < kMostWay &&
+         std::abs(yawed_in(step)) < kMostTurn * step.seconds();
+}
+
 }  // namespace
 
 void PoseFilter::predict(const MotionStep& step) {
@@ -73,17 +85,22 @@ void PoseFilter::predict(const MotionStep& step) {
   if (!step.knows_attitude) silent_s_ += seconds;
   const bool is_back = !knew_attitude_ && step.knows_attitude;
   if (is_back) join(step);
+  const bool is_at_rest = knew_attitude_ && is_still(step);
   knew_attitude_ = step.knows_attitude;
+  constexpr double kStandingAfter = 0.3;  // seconds: the body has come to rest
+  standing_s_ = is_at_rest ? standing_s_ + seconds : 0;
+  const bool stands = standing_s_ > kStandingAfter;
+  if (stands) stand(step);
 
   const Eigen::Vector3d moved = level_ * step.moved * (1 + scale_);
-  level_ = exponential({0, 0, drift_ * seconds}) * level_;
+  if (!stands) level_ = exponential({0, 0, drift_ * seconds}) * level_;
   const double kept = std::exp(-seconds / kTiltSeconds);
   if (step.knows_attitude) level_ = exponential((1 - kept) * tilt_of(level_)) * level_;
 
   Covariance transition = Covariance::Identity();
   transition.block<3, 3>(0, 3) = -cross(moved);
   transition.block<3, 1>(0, 6) = moved / (1 + scale_);
-  transition(5, 7) = seconds;
+  transition(5, 7) = stands ? 0 : seconds;
   if (step.knows_attitude) {
     transition(3, 3) = transition(4, 4) = kept;
   }
@@ -102,7 +119,7 @@ void PoseFilter::predict(const MotionStep& step) {
     const double wander = square(kTilt) * (1 - square(kept));
     covariance_(3, 3) += wander;
     covariance_(4, 4) += wander;
-    covariance_(5, 5) += square(kYawWalk) * seconds;
+    if (!stands) covariance_(5, 5) += square(kYawWalk) * seconds;
   } else {
     covariance_(3, 3) += square(kSilentTilt * seconds);
     covariance_(4, 4) += square(kSilentTilt * seconds);
@@ -114,6 +131,16 @@ void PoseFilter::predict(const MotionStep& step) {
   attitude_ = step.attitude;
   pose_.translation += moved;
   pose_.rotation = (level_ * attitude_).normalized();
+}
+
+/// A robot that stands does not turn: its yaw stays, and the turn that the IMU sees is its drift.
+void PoseFilter::stand(const MotionStep& step) {
+  const double yawed = yawed_in(step), seconds = step.seconds();
+  const double noise = square(kYawWalk) / seconds;
+  const Errors gain = covariance_.col(7) / (covariance_(7, 7) + noise);
+  apply(gain * (-yawed / seconds - drift_));
+  covariance_ -= (gain * covariance_.row(7)).eval();
+  level_ = exponential({0, 0, -yawed}) * level_;
 }
 
 /// Takes up the level frame of an IMU that speaks again.

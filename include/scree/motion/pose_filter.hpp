@@ -17,7 +17,8 @@ struct PoseEvidence {
 
 /// The pose of `base` in `odom`, and how well it is known: an iterated extended Kalman filter.
 /// Predicts by dead reckoning; evidence from registration corrects it only in the directions that
-/// it binds. Beside the pose it estimates the encoder's scale and the drift of the IMU's yaw.
+/// it binds. Beside the pose it estimates the encoder's scale and the drift of the IMU's yaw; the
+/// latter while the robot stands, too: then its yaw stays as it is.
 ///
 /// Its errors, in order: position in `odom` (3, m), rotation vector in `odom` (3, rad), relative
 /// error of the encoder's scale, drift of the IMU's yaw (rad/s).
@@ -53,6 +54,7 @@ public:
 
 private:
   void join(const MotionStep& step);
+  void stand(const MotionStep& step);
   void apply(const Errors& error);
 
   Pose pose_;
@@ -65,6 +67,7 @@ private:
   Eigen::Quaterniond level_before_ = Eigen::Quaterniond::Identity();
   double tilt_before_ = 0, yaw_before_ = 0;  // variances
   double silent_s_ = 0;
+  double standing_s_ = 0;
   // During an update.
   Covariance prior_;
   Errors applied_;

@@ -222,6 +222,47 @@ TEST(PoseFilter, LearnsTheWheelsScaleAndTheDriftOfTheYaw) {
   EXPECT_NEAR(filter.yaw_drift(), -kDrift, 0.0003);
 }
 
+/// For 3 s on the spot, the IMU's yaw turning at this rate.
+PoseFilter on_the_spot(double yaw_rate, double way_a_step = 0, bool knows_distance = true) {
+  PoseFilter filter;
+  filter.predict(ahead(0));
+  for (int i = 0; i < 30; ++i) {
+    const auto attitude = from_roll_pitch_yaw(0, 0, 0.1 * yaw_rate * i);
+    MotionStep step =
+        step_of(attitude, from_roll_pitch_yaw(0, 0, 0.1 * yaw_rate * (i + 1)), way_a_step);
+    step.knows_distance = knows_distance;
+    filter.predict(step);
+  }
+  return filter;
+}
+
+TEST(PoseFilter, StandingItKeepsItsYawAndLearnsTheDrift) {
+  for (const double rate : {0.002, -0.003}) {
+    PoseFilter filter = on_the_spot(rate);
+    EXPECT_LT(std::abs(yaw_of(filter.pose().rotation)), std::abs(rate) * 0.4) << rate;
+    EXPECT_NEAR(filter.yaw_drift(), -rate, 0.1 * std::abs(rate));
+    // Driving off, with the IMU drifting on.
+    for (int i = 30; i < 130; ++i) {
+      filter.predict(step_of(from_roll_pitch_yaw(0, 0, 0.1 * rate * i),
+                             from_roll_pitch_yaw(0, 0, 0.1 * rate * (i + 1)), 0.1));
+    }
+    EXPECT_LT(std::abs(yaw_of(filter.pose().rotation)), std::abs(rate) * 1.5) << rate;
+  }
+}
+
+TEST(PoseFilter, StandingItIsNoLessSureOfItsYaw) {
+  const PoseFilter standing = on_the_spot(0), creeping = on_the_spot(0, 0.003);
+  EXPECT_LT(standing.rotation_deviation().z(), 0.3 * creeping.rotation_deviation().z());
+  EXPECT_LT(standing.covariance()(7, 7), 0.1 * creeping.covariance()(7, 7));
+}
+
+TEST(PoseFilter, WhatTurnsOrRollsOrMayRollDoesNotStand) {
+  EXPECT_NEAR(yaw_of(on_the_spot(0.02).pose().rotation), 0.06, 1e-6) << "turns on the spot";
+  EXPECT_NEAR(yaw_of(on_the_spot(0.005, 0.003).pose().rotation), 0.015, 1e-6) << "creeps";
+  EXPECT_NEAR(yaw_of(on_the_spot(0.005, 0, false).pose().rotation), 0.015, 1e-6)
+      << "the wheel is silent";
+}
+
 TEST(PoseFilter, TheTiltThatWasLearntFadesWhereNothingKeepsIt) {
   PoseFilter filter;
   filter.predict(ahead(0));
