@@ -45,9 +45,14 @@ Eigen::Vector3d tilt_of(const Eigen::Quaterniond& frame) {
   return {up.y(), -up.x(), 0};
 }
 
+/// Rad, +-pi.
+double yaw_between(const Eigen::Quaterniond& from, const Eigen::Quaterniond& to) {
+  return std::remainder(yaw_of(to) - yaw_of(from), 2 * std::numbers::pi);
+}
+
 /// As the IMU says, rad.
 double yawed_in(const MotionStep& step) {
-  return std::remainder(yaw_of(step.attitude) - yaw_of(step.begin_attitude), 2 * std::numbers::pi);
+  return yaw_between(step.begin_attitude, step.attitude);
 }
 
 bool is_still(const MotionStep& step) {
@@ -91,16 +96,17 @@ void PoseFilter::predict(const MotionStep& step) {
   standing_s_ = is_at_rest ? standing_s_ + seconds : 0;
   const bool stands = standing_s_ > kStandingAfter;
   if (stands) stand(step);
+  const double drifting_s = stands ? 0 : seconds;  // that the yaw goes on by the IMU alone
 
   const Eigen::Vector3d moved = level_ * step.moved * (1 + scale_);
-  if (!stands) level_ = exponential({0, 0, drift_ * seconds}) * level_;
+  level_ = exponential({0, 0, drift_ * drifting_s}) * level_;
   const double kept = std::exp(-seconds / kTiltSeconds);
   if (step.knows_attitude) level_ = exponential((1 - kept) * tilt_of(level_)) * level_;
 
   Covariance transition = Covariance::Identity();
   transition.block<3, 3>(0, 3) = -cross(moved);
   transition.block<3, 1>(0, 6) = moved / (1 + scale_);
-  transition(5, 7) = stands ? 0 : seconds;
+  transition(5, 7) = drifting_s;
   if (step.knows_attitude) {
     transition(3, 3) = transition(4, 4) = kept;
   }
@@ -119,7 +125,7 @@ void PoseFilter::predict(const MotionStep& step) {
     const double wander = square(kTilt) * (1 - square(kept));
     covariance_(3, 3) += wander;
     covariance_(4, 4) += wander;
-    if (!stands) covariance_(5, 5) += square(kYawWalk) * seconds;
+    covariance_(5, 5) += square(kYawWalk) * drifting_s;
   } else {
     covariance_(3, 3) += square(kSilentTilt * seconds);
     covariance_(4, 4) += square(kSilentTilt * seconds);
@@ -149,8 +155,7 @@ void PoseFilter::join(const MotionStep& step) {
   const Eigen::Quaterniond gone_on = exponential({0, 0, drift_ * silent_s_}) * level_before_;
   const Eigen::Quaterniond believed =
       pose_.rotation * step.begin_attitude.conjugate() * step.attitude;
-  const double turned =
-      std::remainder(yaw_of(gone_on * step.attitude) - yaw_of(believed), 2 * std::numbers::pi);
+  const double turned = yaw_between(believed, gone_on * step.attitude);
   const bool goes_on = has_known_attitude_ && std::abs(turned) < kAnotherYaw;
   const double yaw = goes_on ? yaw_before_ + square(kDrift * silent_s_)
                              : covariance_(5, 5) + square(kAnotherYawError);

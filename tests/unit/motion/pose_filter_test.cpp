@@ -222,14 +222,18 @@ TEST(PoseFilter, LearnsTheWheelsScaleAndTheDriftOfTheYaw) {
   EXPECT_NEAR(filter.yaw_drift(), -kDrift, 0.0003);
 }
 
+/// The i-th step of 0.1 s while the IMU's yaw turns at this rate.
+MotionStep yawing(double yaw_rate, int i, double way) {
+  return step_of(from_roll_pitch_yaw(0, 0, 0.1 * yaw_rate * i),
+                 from_roll_pitch_yaw(0, 0, 0.1 * yaw_rate * (i + 1)), way);
+}
+
 /// For 3 s on the spot, the IMU's yaw turning at this rate.
 PoseFilter on_the_spot(double yaw_rate, double way_a_step = 0, bool knows_distance = true) {
   PoseFilter filter;
   filter.predict(ahead(0));
   for (int i = 0; i < 30; ++i) {
-    const auto attitude = from_roll_pitch_yaw(0, 0, 0.1 * yaw_rate * i);
-    MotionStep step =
-        step_of(attitude, from_roll_pitch_yaw(0, 0, 0.1 * yaw_rate * (i + 1)), way_a_step);
+    MotionStep step = yawing(yaw_rate, i, way_a_step);
     step.knows_distance = knows_distance;
     filter.predict(step);
   }
@@ -242,10 +246,7 @@ TEST(PoseFilter, StandingItKeepsItsYawAndLearnsTheDrift) {
     EXPECT_LT(std::abs(yaw_of(filter.pose().rotation)), std::abs(rate) * 0.4) << rate;
     EXPECT_NEAR(filter.yaw_drift(), -rate, 0.1 * std::abs(rate));
     // Driving off, with the IMU drifting on.
-    for (int i = 30; i < 130; ++i) {
-      filter.predict(step_of(from_roll_pitch_yaw(0, 0, 0.1 * rate * i),
-                             from_roll_pitch_yaw(0, 0, 0.1 * rate * (i + 1)), 0.1));
-    }
+    for (int i = 30; i < 130; ++i) filter.predict(yawing(rate, i, 0.1));
     EXPECT_LT(std::abs(yaw_of(filter.pose().rotation)), std::abs(rate) * 1.5) << rate;
   }
 }
