@@ -60,12 +60,13 @@ const ObstacleList& Pipeline::process(const Sweep& sweep) {
 
 void Pipeline::detect_in_map() {
   const RollingMap& map = mapper_->map();
-  list_.pose = mapper_->pose();
   map_detector_.detect(map.cloud(), map.beams(), found_, timer_);
   for (Obstacle& obstacle : found_) obstacle.center += map.origin();
   tracker_.update(
-      list_.stamp_ns, list_.pose.translation, {found_.data(), found_.size()},
+      list_.stamp_ns, mapper_->pose().translation, {found_.data(), found_.size()},
       [&map](const Eigen::Vector3d& place) { return map.sight(place); }, list_.obstacles);
+  list_.pose = mapper_->to_odom() * mapper_->pose();
+  for (Obstacle& obstacle : list_.obstacles) obstacle.center = mapper_->to_odom() * obstacle.center;
   timer_.done(Stage::tracking);
 }
 

@@ -39,7 +39,7 @@ Eigen::Matrix3d cross(const Eigen::Vector3d& v) {
   return matrix;
 }
 
-/// What turns the vertical of a frame, nearly upright, into that of `odom`.
+/// What turns the vertical of a frame, nearly upright, into that of the map's frame.
 Eigen::Vector3d tilt_of(const Eigen::Quaterniond& frame) {
   const Eigen::Vector3d up = frame * Eigen::Vector3d::UnitZ();
   return {up.y(), -up.x(), 0};
@@ -113,14 +113,14 @@ void PoseFilter::predict(const MotionStep& step) {
   covariance_ = transition * covariance_ * transition.transpose();
 
   const double distance = std::abs(step.distance);
-  const Eigen::Matrix3d to_odom = (level_ * step.attitude).toRotationMatrix();
+  const Eigen::Matrix3d to_map = (level_ * step.attitude).toRotationMatrix();
   Eigen::Vector3d way(square(kSlip) * distance, square(kSideSlip) * distance,
                       square(kHeave) * distance);
   way.array() += square(kShake);
   if (!step.knows_distance) {
     way.x() += square(kSilentSpeed * seconds);
   }
-  covariance_.block<3, 3>(0, 0) += to_odom * way.asDiagonal() * to_odom.transpose();
+  covariance_.block<3, 3>(0, 0) += to_map * way.asDiagonal() * to_map.transpose();
   if (step.knows_attitude) {
     const double wander = square(kTilt) * (1 - square(kept));
     covariance_(3, 3) += wander;

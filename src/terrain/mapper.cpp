@@ -15,6 +15,7 @@ Mapper::Mapper(const Settings& settings)
       surfel_reach_(settings.map.registration_reach),
       dead_reckoning_(settings.imu.mount().rotation),
       sweep_(static_cast<std::size_t>(settings.map.max_points)),
+      levelling_(settings.imu.translation),
       registration_(static_cast<std::size_t>(settings.map.max_points)),
       surfels_(kSurfel),
       map_(settings.map) {}
@@ -38,6 +39,7 @@ void Mapper::add(const Sweep& sweep, const SyncBuffer& sensors, StageTimer& time
     timer.done(Stage::registration);
   }
   assume_motion(before);
+  levelling_.advance(sensors, step_, pose());
   map_.add(sweep_, filter_.pose(), sweep.end_ns);
   timer.done(Stage::map);
 }

@@ -74,7 +74,8 @@ void drive_without_faults(const Drive& drive, const Settings& settings, const St
     return surface_error(drive.terrain, mapper.map().cloud(), to_world);
   };
   const Pose& truth = result.truth.poses.back().base;
-  result.surface = error_of_map(laid_onto(mapper.pose(), truth));
+  const Pose& to_odom = mapper.to_odom();
+  result.surface = error_of_map(laid_onto(to_odom * mapper.pose(), truth) * to_odom);
   const Eigen::Quaterniond turn = truth.rotation * mapper.pose().rotation.conjugate();
   result.level = error_of_map({truth.translation - turn * mapper.pose().translation, turn});
 }

@@ -109,10 +109,11 @@ public:
     Sweep sweep(static_cast<std::size_t>(settings.map.max_points));
     LabelledClusters all;
     for (int i = 1; feed.next(sweep, {&pipeline.sensors()}); ++i) {
-      const ObstacleList& list = pipeline.process(sweep);
+      pipeline.process(sweep);
       if (i % kEvery != 0) continue;
+      const Mapper& mapper = pipeline.mapper();
       const auto features = as_believed(drive.terrain.features(), drive.motion.base(sweep.end_ns),
-                                        list.pose, pipeline.mapper().map().origin());
+                                        mapper.pose(), mapper.map().origin());
       all += label_clusters(pipeline.detector(), features, feed.truth().visible.back().ids);
     }
     return all;

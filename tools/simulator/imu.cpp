@@ -33,8 +33,7 @@ Eigen::Vector3d SimulatedImu::normal() {
 }
 
 Pose SimulatedImu::sensor(std::int64_t t_ns) const {
-  const Pose base = motion_.base(t_ns);
-  return {base * mount_.translation, base.rotation * mount_.rotation};
+  return motion_.base(t_ns) * mount_;
 }
 
 void SimulatedImu::wander() {

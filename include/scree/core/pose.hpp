@@ -21,6 +21,10 @@ struct Pose {
   Eigen::Vector3d operator*(const Eigen::Vector3d& point) const {
     return rotation * point + translation;
   }
+  /// A grandchild's frame in the parent.
+  Pose operator*(const Pose& child) const {
+    return {*this * child.translation, rotation * child.rotation};
+  }
 };
 
 /// Rz(yaw) Ry(pitch) Rx(roll), angles in radians.

@@ -20,9 +20,9 @@ class Tracker {
 public:
   Tracker(const TrackingSettings& settings, std::size_t max_tracks);
 
-  /// @param robot where it is, in `odom`
-  /// @param found every candidate of this list with its confidence, also low ones, in `odom`
-  /// @param sight of a place in `odom`
+  /// @param robot where it is, in the map's frame
+  /// @param found every candidate of this list with its confidence, also low ones, in that frame
+  /// @param sight of a place in it
   /// @param obstacles those to publish; their ids are the tracks'
   void update(std::int64_t stamp_ns, const Eigen::Vector3d& robot, std::span<const Obstacle> found,
               const std::function<Sight(const Eigen::Vector3d&)>& sight,

@@ -9,19 +9,19 @@
 namespace scree {
 
 /// What is known of a pose beyond dead reckoning, as the sum of squares e^T information e + 2
-/// gradient^T e of an error e: position in `odom` (m), then rotation vector in `odom` (rad).
+/// gradient^T e of an error e: position in the map's frame (m), then rotation vector in it (rad).
 struct PoseEvidence {
   Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 6, 1> gradient = Eigen::Matrix<double, 6, 1>::Zero();
 };
 
-/// The pose of `base` in `odom`, and how well it is known: an iterated extended Kalman filter.
-/// Predicts by dead reckoning; evidence from registration corrects it only in the directions that
-/// it binds. Beside the pose it estimates the encoder's scale and the drift of the IMU's yaw; the
-/// latter while the robot stands, too: then its yaw stays as it is.
+/// The pose of `base` in the map's frame, and how well it is known: an iterated extended Kalman
+/// filter. Predicts by dead reckoning; evidence from registration corrects it only in the
+/// directions that it binds. Beside the pose it estimates the encoder's scale and the drift of the
+/// IMU's yaw; the latter while the robot stands, too: then its yaw stays as it is.
 ///
-/// Its errors, in order: position in `odom` (3, m), rotation vector in `odom` (3, rad), relative
-/// error of the encoder's scale, drift of the IMU's yaw (rad/s).
+/// Its errors, in order: position in the map's frame (3, m), rotation vector in it (3, rad),
+/// relative error of the encoder's scale, drift of the IMU's yaw (rad/s).
 class PoseFilter {
 public:
   static constexpr int kErrors = 8;
@@ -58,7 +58,7 @@ private:
   void apply(const Errors& error);
 
   Pose pose_;
-  Eigen::Quaterniond level_ = Eigen::Quaterniond::Identity();  // the IMU's level frame in odom
+  Eigen::Quaterniond level_ = Eigen::Quaterniond::Identity();  // the IMU's level frame in the map's
   Eigen::Quaterniond attitude_ = Eigen::Quaterniond::Identity();
   double scale_ = 0, drift_ = 0;
   Covariance covariance_ = Covariance::Zero();

@@ -7,6 +7,7 @@
 #include "scree/core/sweep.hpp"
 #include "scree/motion/dead_reckoning.hpp"
 #include "scree/motion/deskew.hpp"
+#include "scree/motion/levelling.hpp"
 #include "scree/motion/pose_filter.hpp"
 #include "scree/sync/sync_buffer.hpp"
 #include "scree/terrain/registration.hpp"
@@ -16,7 +17,9 @@
 namespace scree {
 
 /// Rebuilds the ground around the robot: each sweep is moved to its end by dead reckoning, laid
-/// onto the ground seen so far, and added to the rolling map. Memory is taken once, here.
+/// onto the ground seen so far, and added to the rolling map. The map has a frame of its own, with
+/// the origin and the yaw of `odom`, which leans by what was wrong with the IMU's attitude at the
+/// first sweep; to_odom() lays it level. Memory is taken once, here.
 class Mapper {
 public:
   explicit Mapper(const Settings& settings);
@@ -29,8 +32,10 @@ public:
     add(sweep, sensors, none);
   }
 
-  /// `base` in `odom` at the end of the last sweep.
+  /// `base` in the map's frame at the end of the last sweep.
   const Pose& pose() const { return filter_.pose(); }
+  /// The map's frame in `odom`, as far as it is known by now.
+  const Pose& to_odom() const { return levelling_.to_odom(); }
   const PoseFilter& filter() const { return filter_; }
   const RollingMap& map() const { return map_; }
   const MotionStep& step() const { return step_; }
@@ -49,6 +54,7 @@ private:
   MotionTrack track_;
   DeskewedSweep sweep_;
   PoseFilter filter_;
+  Levelling levelling_;
   Registration registration_;
   SurfelMap surfels_;
   RollingMap map_;

@@ -16,24 +16,27 @@
 
 namespace scree {
 
-/// The ground around the robot, put together of its sweeps: voxels in `odom`, around the robot,
-/// bounded in number, reach and age. A voxel keeps the mean of its points. Points that no second
-/// sweep confirms stay out of the cloud; what beams pass through again and again is forgotten.
+/// The ground around the robot, put together of its sweeps: voxels in a frame of its own, around
+/// the robot, bounded in number, reach and age. A voxel keeps the mean of its points. Points that
+/// no second sweep confirms stay out of the cloud; what beams pass through again and again is
+/// forgotten.
 class RollingMap {
 public:
   explicit RollingMap(const MapSettings& settings);
 
-  /// Adds a sweep that ended at `end_ns`, seen from `pose` (`base` in `odom`), and forgets.
+  /// Adds a sweep that ended at `end_ns`, seen from `pose` (`base` in the map's frame), and
+  /// forgets.
   void add(const DeskewedSweep& sweep, const Pose& pose, std::int64_t end_ns);
   /// Everything is unseen again.
   void clear();
 
-  /// The confirmed points around the robot, in `odom` shifted by -origin().
+  /// The confirmed points around the robot, in the map's frame shifted by -origin().
   const PointCloud& cloud() const { return cloud_; }
   /// Of each of these points: the beams that came to its voxel.
   std::span<const BeamCount> beams() const { return beams_; }
   const Eigen::Vector3d& origin() const { return origin_; }
-  /// Of a place in `odom`, to the accuracy of the coarse cells in which free space is kept.
+  /// Of a place in the map's frame, to the accuracy of the coarse cells in which free space is
+  /// kept.
   Sight sight(const Eigen::Vector3d& place) const;
 
   std::size_t voxels() const { return voxels_.size(); }
@@ -57,7 +60,7 @@ private:
     std::uint32_t last_sweep = 0;
     std::int64_t seen_ns = 0;                        ///< end of that sweep
     std::uint32_t slot = 0;                          ///< in the index
-    Eigen::Vector3f mean = Eigen::Vector3f::Zero();  ///< odom - origin
+    Eigen::Vector3f mean = Eigen::Vector3f::Zero();  ///< the map's frame - origin
     float reflectivity = 0;
   };
 

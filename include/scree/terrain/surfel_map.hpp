@@ -11,7 +11,7 @@ namespace scree {
 
 /// A patch of the ground: the plane through the points of one cell.
 struct Surfel {
-  Eigen::Vector3f center = Eigen::Vector3f::Zero();   ///< `odom`, metres
+  Eigen::Vector3f center = Eigen::Vector3f::Zero();   ///< the map's frame, metres
   Eigen::Vector3f normal = Eigen::Vector3f::UnitZ();  ///< upwards
   float thickness = 0;  ///< standard deviation of the points about the plane, metres
   float width = 0;      ///< standard deviation in the plane's narrower direction, metres
@@ -20,8 +20,8 @@ struct Surfel {
 
 /// The ground around the robot as planes in cubic cells, for registration. Bounded: cells lie in an
 /// EndlessBox, and a cell is taken over by the place that was seen last. So what the robot leaves
-/// behind is forgotten. Points are floats in `odom`: good to 1 mm as far as 8 km from its origin,
-/// to 1 cm as far as 80 km.
+/// behind is forgotten. Points are floats in the map's frame: good to 1 mm as far as 8 km from its
+/// origin, to 1 cm as far as 80 km.
 class SurfelMap {
 public:
   /// @param cell edge, metres

@@ -64,12 +64,27 @@ TEST_F(PipelineMap, TakesSweepsByThemselvesUntilAMotionSensorSpeaks) {
   EXPECT_LT(first.pose.translation.norm(), 0.15);
   const ObstacleList& list = go(10);
   EXPECT_EQ(list.stamp_ns, sweep_.end_ns);
-  EXPECT_EQ(list.pose.translation, pipeline_.mapper().pose().translation);
+  const Pose pose = pipeline_.mapper().to_odom() * pipeline_.mapper().pose();
+  EXPECT_EQ(list.pose.translation, pose.translation);
   EXPECT_NEAR(list.pose.translation.norm(), 1, 0.15);
   EXPECT_GT(pipeline_.ground().size(), 1000U);
   EXPECT_EQ(&pipeline_.ground(), &pipeline_.mapper().map().cloud());
   go(2, false);
   EXPECT_TRUE(pipeline_.uses_map()) << "also when they fall silent";
+}
+
+// Registration keeps the map as the first attitude laid it; what is published is upright.
+TEST_F(PipelineMap, PublishesPosesThatStandUpright) {
+  drive_.lean = exponential({0.008, -0.006, 0});
+  const auto lean_of = [&](const Pose& pose) {
+    const Eigen::Quaterniond truth = drive_.base(kSweep * sweeps_).rotation;
+    const Eigen::Vector3d up = pose.rotation * truth.conjugate() * Eigen::Vector3d::UnitZ();
+    return up.head<2>().norm();
+  };
+  EXPECT_NEAR(lean_of(go(1).pose), 0.01, 0.001);
+  const Pose published = go(60).pose;
+  EXPECT_NEAR(lean_of(pipeline_.mapper().pose()), 0.01, 0.002);
+  EXPECT_LT(lean_of(published), 0.004);
 }
 
 TEST_F(PipelineMap, HasNotLookedWithItsFirstSweepNorWithAPartOfATurn) {

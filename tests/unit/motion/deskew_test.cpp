@@ -20,8 +20,7 @@ LidarSettings mounted() {
 }
 
 Pose lidar_at(const test::SimpleDrive& drive, const LidarSettings& lidar, double t) {
-  const Pose base = drive.base(t), mount = lidar.mount();
-  return {base * mount.translation, base.rotation * mount.rotation};
+  return drive.base(t) * lidar.mount();
 }
 
 class DeskewTest : public testing::Test {

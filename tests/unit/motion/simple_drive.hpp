@@ -22,19 +22,29 @@ struct SimpleDrive {
   std::function<Pose(double)> base;
   std::function<double(double)> distance;  ///< metres along x of `base`
   Eigen::Quaterniond imu_mount = Eigen::Quaterniond::Identity();
-  double yaw_offset = 0;  ///< of the IMU's level frame, rad
-  double scale = 1;       ///< of the wheel
+  Eigen::Vector3d imu_translation = Eigen::Vector3d::Zero();  ///< in `base`, metres
+  double yaw_offset = 0;                                      ///< of the IMU's level frame, rad
+  Eigen::Quaterniond lean = Eigen::Quaterniond::Identity();   ///< by which that frame is wrong
+  double scale = 1;                                           ///< of the wheel
 
   Eigen::Vector3d rate(double t) const {
     constexpr double kHalf = 1e-4;
     return logarithm(base(t - kHalf).rotation.conjugate() * base(t + kHalf).rotation) / (2 * kHalf);
   }
+  /// What the IMU feels, in the level frame, m/s^2.
+  Eigen::Vector3d specific_force(double t) const {
+    constexpr double kHalf = 1e-3, kGravity = 9.81;
+    const auto place = [&](double at) { return base(at) * imu_translation; };
+    return (place(t + kHalf) - 2 * place(t) + place(t - kHalf)) / (kHalf * kHalf) +
+           Eigen::Vector3d(0, 0, kGravity);
+  }
   ImuSample imu(double t) const {
     ImuSample sample;
     sample.t_ns = nanoseconds(t);
-    sample.has_orientation = sample.has_rate = true;
-    sample.orientation = exponential({0, 0, yaw_offset}) * base(t).rotation * imu_mount;
+    sample.has_orientation = sample.has_rate = sample.has_acceleration = true;
+    sample.orientation = exponential({0, 0, yaw_offset}) * lean * base(t).rotation * imu_mount;
     sample.rate = imu_mount.conjugate() * rate(t);
+    sample.acceleration = (base(t).rotation * imu_mount).conjugate() * specific_force(t);
     return sample;
   }
   EncoderSample wheel(double t) const {

@@ -244,7 +244,7 @@ ScoringResult drive(const std::string& right, Pose odom = {}) {
     pose.translation.x() = static_cast<double>(i);
     truth.poses.push_back({t_ns, pose});
     truth.visible.push_back({t_ns, {1}, {}});
-    const Pose reported = {odom * pose.translation, odom.rotation * pose.rotation};
+    const Pose reported = odom * pose;
     std::vector<Obstacle> found;
     if (right[i] != '.') found.push_back(seen(10, 0, right[i] == '+' ? kRock : kHole));
     for (Obstacle& each : found) each.center = odom * each.center;

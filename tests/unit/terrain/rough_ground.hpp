@@ -52,7 +52,7 @@ inline void scan(const RoughGround& ground, const SimpleDrive& drive, const Lida
     const double before = kTurn * (columns - 1 - column) / columns;
     const double azimuth = 2 * std::numbers::pi * column / columns;
     const Pose base = drive.base(end - before);
-    const Pose at{base * mount.translation, base.rotation * mount.rotation};
+    const Pose at = base * mount;
     for (int laser = 0; laser < 16; ++laser) {
       const double up = radians(2 * laser - 15);
       const Eigen::Vector3d along(std::cos(azimuth) * std::cos(up),

@@ -1,0 +1,104 @@
+#include "scree/motion/levelling.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <optional>
+
+#include "scree/core/rotation.hpp"
+
+namespace scree {
+namespace {
+
+constexpr double kGravity = 9.81;
+constexpr double kWindow = 1;  // seconds
+// Standard deviations.
+constexpr double kLean = 0.006;  // of the IMU's roll and pitch at the first sweep, rad ...
+constexpr double kLeanWalk =
+    0.0005;  // ... and how the map goes on from there, rad in a square root of a second
+constexpr double kBias = 0.03;   // of the accelerometer, m/s^2
+constexpr double kNoise = 0.05;  // of a window: vibration, slip and the wheel's steps, m/s^2
+constexpr double kFarthest = 5;  // in standard deviations: beyond it a window felt a shock
+
+/// The specific force that the IMU felt during a step, in the `level` frame, m/s. Nothing when it
+/// has hardly said.
+std::optional<Eigen::Vector3d> felt_during(const SampleHistory<ImuSample>& imu,
+                                           const MotionStep& step) {
+  Eigen::Vector3d felt = Eigen::Vector3d::Zero();
+  std::int64_t known_ns = 0;
+  const std::size_t end = imu.count_until(step.end_ns);
+  for (std::size_t i = std::max<std::size_t>(imu.count_until(step.begin_ns), 1); i < end; ++i) {
+    const ImuSample& sample = imu[i];
+    const std::int64_t since_ns = sample.t_ns - imu[i - 1].t_ns;
+    if (!sample.has_acceleration || !sample.acceleration.allFinite()) continue;
+    if (since_ns > SyncBuffer::kSilenceNs) continue;
+    felt += sample.orientation * sample.acceleration * (static_cast<double>(since_ns) * 1e-9);
+    known_ns += since_ns;
+  }
+  const double known = static_cast<double>(known_ns) * 1e-9;
+  if (known < 0.5 * step.seconds()) return std::nullopt;
+  return felt * (step.seconds() / known);
+}
+
+}  // namespace
+
+void Levelling::Sums::operator+=(const Sums& other) {
+  felt += other.felt;
+  heading += other.heading;
+  seconds += other.seconds;
+}
+
+Levelling::Levelling(const Eigen::Vector3d& imu) : imu_(imu) {
+  covariance_.setZero();
+  covariance_.diagonal() << kLean * kLean, kLean * kLean, kBias * kBias, kBias * kBias;
+}
+
+void Levelling::advance(const SyncBuffer& sensors, const MotionStep& step, const Pose& pose) {
+  constexpr double kLongest = 0.5;  // seconds: of a step whose mean velocity says anything
+  const double seconds = step.seconds();
+  const bool is_known =
+      step.knows_attitude && step.knows_distance && seconds > 0 && seconds < kLongest;
+  const auto felt = is_known ? felt_during(sensors.imu(), step) : std::nullopt;
+  if (!felt) {
+    has_window_ = false;
+    return;
+  }
+  const Eigen::Quaterniond level = pose.rotation * step.attitude.conjugate();
+  const Eigen::Vector3d swung = step.attitude * imu_ - step.begin_attitude * imu_;
+  const Eigen::Vector3d velocity = level * (step.moved + swung) / seconds;
+  // The mean velocity is that of the step's middle: there one window ends and the next begins.
+  const Sums half{level * *felt / 2,
+                  pose.rotation.toRotationMatrix().topLeftCorner<2, 2>() * seconds / 2,
+                  seconds / 2};
+  if (has_window_) window_ += half;
+  if (!has_window_ || window_.seconds >= kWindow) {
+    if (has_window_) learn(velocity - velocity_before_);
+    has_window_ = true;
+    window_ = {};
+    velocity_before_ = velocity;
+  }
+  window_ += half;
+
+  const Eigen::Vector3d place = to_odom_ * pose.translation;
+  to_odom_.rotation = exponential({states_[0], states_[1], 0});
+  to_odom_.translation = place - to_odom_.rotation * pose.translation;
+}
+
+/// @param faster by how much the IMU's velocity grew over the window, m/s
+void Levelling::learn(const Eigen::Vector3d& faster) {
+  covariance_.topLeftCorner<2, 2>().diagonal().array() += kLeanWalk * kLeanWalk * window_.seconds;
+  const Eigen::Vector2d gravity = ((window_.felt - faster) / window_.seconds).head<2>();
+  // What turns the map's frame by the lean brings up to where gravity says it is.
+  Eigen::Matrix<double, 2, kStates> sees;
+  sees << 0, -kGravity, 0, 0, kGravity, 0, 0, 0;
+  sees.rightCols<2>() = window_.heading / window_.seconds;
+  const Eigen::Vector2d off = gravity - sees * states_;
+  const Eigen::Matrix2d expected =
+      sees * covariance_ * sees.transpose() + kNoise * kNoise * Eigen::Matrix2d::Identity();
+  const Eigen::Matrix2d inverse = expected.inverse();
+  if (!(off.dot(inverse * off) <= kFarthest * kFarthest)) return;
+  const Eigen::Matrix<double, kStates, 2> gain = covariance_ * sees.transpose() * inverse;
+  states_ += gain * off;
+  covariance_ -= (gain * sees * covariance_).eval();
+}
+
+}  // namespace scree
