@@ -96,6 +96,7 @@ public:
 
   LabelledClusters operator()(std::uint64_t seed) {
     constexpr int kEvery = 5;  // sweeps
+    constexpr double kLeastPiece = 0.25;
     CaptureSettings drawn;
     drawn.seed = seed;
     drawn.scene = kScenes[seed % kScenes.size()];
@@ -114,7 +115,8 @@ public:
       const Mapper& mapper = pipeline.mapper();
       const auto features = as_believed(drive.terrain.features(), drive.motion.base(sweep.end_ns),
                                         mapper.pose(), mapper.map().origin());
-      all += label_clusters(pipeline.detector(), features, feed.truth().visible.back().ids);
+      all += label_clusters(pipeline.detector(), features, feed.truth().visible.back().ids,
+                            kLeastPiece);
     }
     return all;
   }

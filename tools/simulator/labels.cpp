@@ -51,18 +51,33 @@ LabelledClusters& LabelledClusters::operator+=(const LabelledClusters& other) {
 }
 
 LabelledClusters label_clusters(const Detector& detector, std::span<const TerrainFeature> features,
-                                std::span<const int> asked) {
-  LabelledClusters labelled;
-  labelled.obstacles = asked.size();
-  std::vector<bool> has_cluster(Terrain::kMostFeatures + 1);
+                                std::span<const int> asked, double least_piece) {
+  struct Named {
+    Sample sample;
+    int id;  // of the feature, 0 for none
+    std::uint32_t points;
+  };
+  std::vector<Named> all;
+  std::vector<std::uint32_t> largest(Terrain::kMostFeatures + 1);
   for (const Cluster& cluster : detector.clusters().all()) {
     if (!std::ranges::all_of(cluster.features, [](float f) { return std::isfinite(f); })) continue;
     const TerrainFeature* feature = feature_of(cluster, detector, features);
     if (feature != nullptr && feature->is_small) continue;
-    labelled.samples.push_back({cluster.features, label_of(feature, cluster.features)});
-    if (feature != nullptr) has_cluster[static_cast<std::size_t>(feature->id)] = true;
+    const Label label = label_of(feature, cluster.features);
+    const int id = feature != nullptr ? feature->id : 0;
+    const std::uint32_t points = cluster.end - cluster.begin;
+    all.push_back({{cluster.features, label}, id, points});
+    std::uint32_t& most = largest[static_cast<std::size_t>(id)];
+    most = std::max(most, points);
   }
-  for (const int id : asked) labelled.found += has_cluster[static_cast<std::size_t>(id)] ? 1U : 0U;
+  LabelledClusters labelled;
+  labelled.obstacles = asked.size();
+  for (const Named& named : all) {
+    const double least = least_piece * largest[static_cast<std::size_t>(named.id)];
+    if (named.sample.label != Label::none && named.points < least) continue;
+    labelled.samples.push_back(named.sample);
+  }
+  for (const int id : asked) labelled.found += largest[static_cast<std::size_t>(id)] > 0 ? 1U : 0U;
   return labelled;
 }
 

@@ -25,7 +25,9 @@ struct LabelledClusters {
 /// those of stones and dents too small to be asked for.
 /// @param asked ids of the features that count as obstacles asked for; other features still give
 /// their clusters a label
+/// @param least_piece share of the points of an obstacle's largest cluster; smaller ones are left
+/// out: splinters of it, or tufts that stand beside it
 LabelledClusters label_clusters(const Detector& detector, std::span<const TerrainFeature> features,
-                                std::span<const int> asked);
+                                std::span<const int> asked, double least_piece = 0);
 
 }  // namespace scree

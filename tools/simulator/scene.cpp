@@ -144,6 +144,7 @@ TerrainSettings scene_terrain(Scene scene, double area, std::uint64_t seed) {
   settings.roughness = recipe.roughness;
   settings.unevenness = recipe.unevenness.draw(random);
   settings.tuft_cover = recipe.tuft_cover.draw(random);
+  settings.tuft_light = 0.15;  // a denser one is a rock to a lidar, and may well hide one
   settings.negative = std::max(count(recipe.negative), 1);
   settings.positive = std::max(static_cast<int>(std::lround(obstacles)) - settings.negative, 1);
   settings.smooth = count(recipe.smooth);
@@ -158,7 +159,9 @@ TerrainSettings scene_terrain(Scene scene, double area, std::uint64_t seed) {
 TerrainSettings cloud_terrain(Scene scene, std::uint64_t seed) {
   const double edge = 2 * TerrainSettings().placed_within;
   constexpr double kSparser = 0.5;  // a place that was worth mapping whole is less crowded
-  return scene_terrain(scene, kSparser * edge * edge, seed);
+  TerrainSettings settings = scene_terrain(scene, kSparser * edge * edge, seed);
+  settings.tuft_light = 0;  // there the light is lost that would tell
+  return settings;
 }
 
 TerrainSettings scene_terrain() {

@@ -221,7 +221,8 @@ void Terrain::grow_tufts(std::uint64_t seed) {
     }
     tuft.base = {x, y, height(x, y)};
     tuft.height = tallest * random.uniform(0.35, 1);
-    tuft.density = densest * random.uniform(0.3, 1);
+    const double most = -std::log(settings_.tuft_light) / (2 * tuft.radius);
+    tuft.density = std::min(densest * random.uniform(0.3, 1), most);
     tufts.push_back(tuft);
   }
   tufts_ = Tufts(std::move(tufts), settings_.size);

@@ -21,6 +21,7 @@ struct TerrainSettings {
   double roughness = 0.012;  ///< most height of stones and grass roots too small to matter
   double unevenness = 0;     ///< standard deviation of waves 0.3 to 2 m long
   double tuft_cover = 0;     ///< share of the ground under tufts of grass
+  double tuft_light = 0;     ///< least share of the light that passes through a tuft's middle
   int positive = 11;         ///< rocks
   int negative = 7;          ///< holes
   int smooth = 8;            ///< mounds and hollows that are no obstacles

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "unit/detect/clouds.hpp"
 
 namespace scree {
@@ -56,7 +58,6 @@ protected:
 
   static constexpr auto kRock = ObstacleKind::positive, kHole = ObstacleKind::negative;
 
-private:
   static DetectSettings settings() {
     DetectSettings settings = DetectSettings::for_cloud();
     settings.max_points = 60'000;
@@ -65,6 +66,7 @@ private:
     return settings;
   }
 
+private:
   static inline Detector* detector_ = nullptr;
 };
 
@@ -110,6 +112,29 @@ TEST_F(Labels, HalfOfThePointsInTheFootprintAreEnough) {
               UnorderedElementsAre(Label::positive, Label::none));
   const Footprint edge = rectangle(x + 0.4, -1, x + 1, 1);
   EXPECT_THAT(labels({feature(1, kRock, edge)}), ElementsAre(Label::none, Label::none));
+}
+
+TEST_F(Labels, PiecesBesideALargerOneAreLeftOut) {
+  // As high as the bump, and a quarter as wide.
+  PointCloud cloud = test::bump_and_bowl(50'000);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const float away = std::hypot(cloud.x[i] - kBumpX, cloud.y[i] - 1.5F) / (kRoundRadius / 4);
+    if (away < 1) cloud.z[i] += 0.4F * (1 - away * away);
+  }
+  Detector detector(settings(), Network());
+  FixedVector<Obstacle> unused(1);
+  detector.detect(cloud, unused);
+  ASSERT_EQ(detector.clusters().all().size(), 3U);
+  const TerrainFeature rocks = feature(1, kRock, rectangle(kBumpX - 1, -1, kBumpX + 1, 2));
+  const auto labels_of = [&](double least_piece) {
+    std::vector<Label> labels;
+    const LabelledClusters labelled = label_clusters(detector, {&rocks, 1}, {{1}}, least_piece);
+    for (const Sample& sample : labelled.samples) labels.push_back(sample.label);
+    EXPECT_EQ(labelled.found, 1U);
+    return labels;
+  };
+  EXPECT_THAT(labels_of(0), UnorderedElementsAre(Label::positive, Label::positive, Label::none));
+  EXPECT_THAT(labels_of(0.25), UnorderedElementsAre(Label::positive, Label::none));
 }
 
 TEST_F(Labels, CountsWhatIsAskedForAndFound) {

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace scree {
 namespace {
 
@@ -52,6 +55,25 @@ TEST(Scene, TuftsStandOnTheGroundBesideObstacles) {
     covered += terrain.tufts().at(random.uniform(-11, 11), random.uniform(-11, 11)) != nullptr;
   }
   EXPECT_NEAR(static_cast<double>(covered) / kPlaces, 0.26, 0.08);
+}
+
+TEST(Scene, LightPassesThroughTheMiddleOfEachTuft) {
+  const auto least_light = [](TerrainSettings settings) {
+    settings.size = 24;
+    settings.cell = 0.1;
+    settings.placed_within = 12;
+    settings.tuft_cover = 0.3;
+    double least = 1;
+    for (std::uint64_t seed = 1; seed < 6; ++seed) {
+      const Terrain terrain(settings, seed);
+      for (const Tuft& tuft : terrain.tufts().all()) {
+        least = std::min(least, std::exp(-tuft.density * 2 * tuft.radius));
+      }
+    }
+    return least;
+  };
+  EXPECT_NEAR(least_light(scene_terrain(Scene::grass, 400, 7)), 0.15, 1e-9);
+  EXPECT_LT(least_light(cloud_terrain(Scene::grass, 7)), 0.05);
 }
 
 }  // namespace
