@@ -5,6 +5,21 @@
 #include <utility>
 
 namespace scree {
+namespace {
+
+/// Changes their order. @pre there are some, share below 1
+float quantile(FixedVector<float>& values, double share) {
+  float* const place =
+      values.begin() + static_cast<std::size_t>(share * static_cast<double>(values.size()));
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
+
+float half_height(const Features& features) {
+  return std::max(features[max_height], -features[min_height]) / 2;
+}
+
+}  // namespace
 
 void Surroundings::build(PointView cloud, std::span<const float> heights, const EdgePoints& edges,
                          const GroundSurface& surface) {
@@ -18,6 +33,7 @@ void Surroundings::build(PointView cloud, std::span<const float> heights, const 
   visited_.assign(surface.columns() * surface.rows(), 0);
   lowest_.resize(visited_.size());
   highest_.resize(visited_.size());
+  steepest_.resize(visited_.size());
   number_ = 0;
   for (std::size_t i = 0; i < edges.size(); ++i) {
     sides_[surface.cell_at(edges.points.x[i], edges.points.y[i])] |=
@@ -42,13 +58,16 @@ bool Surroundings::is_amid_ground(float x, float y, const GroundSurface& surface
   return seen(1, 1) && seen(1, -1) && seen(-1, 1) && seen(-1, -1);
 }
 
-bool Surroundings::borders_on(std::size_t cell, std::uint8_t side, std::size_t columns) const {
-  constexpr std::size_t kReach = 2;
-  const std::size_t column = cell % columns, row = cell / columns, rows = sides_.size() / columns;
-  for (std::size_t v = row - std::min(row, kReach); v <= std::min(row + kReach, rows - 1); ++v) {
-    for (std::size_t u = column - std::min(column, kReach);
-         u <= std::min(column + kReach, columns - 1); ++u) {
-      if ((sides_[v * columns + u] & side) != 0) return true;
+/// Whether a cell is `is`, or one up to `reach` cells from it.
+template <class Is>
+bool Surroundings::has_near(std::size_t cell, std::size_t reach, const GroundSurface& surface,
+                            const Is& is) const {
+  const std::size_t columns = surface.columns(), rows = surface.rows();
+  const std::size_t column = cell % columns, row = cell / columns;
+  for (std::size_t v = row - std::min(row, reach); v <= std::min(row + reach, rows - 1); ++v) {
+    for (std::size_t u = column - std::min(column, reach);
+         u <= std::min(column + reach, columns - 1); ++u) {
+      if (is(v * columns + u)) return true;
     }
   }
   return false;
@@ -57,12 +76,14 @@ bool Surroundings::borders_on(std::size_t cell, std::uint8_t side, std::size_t c
 void Surroundings::measure(Cluster& cluster, std::span<const std::uint32_t> members,
                            const EdgePoints& edges, const GroundSurface& surface,
                            const Solidity& solidity) {
+  constexpr std::size_t kRim = 2;  // cells
   ++number_;
   cells_.clear();
   double slopes = 0;
   float rim = 0, through = 0, spread = 0;
   for (const std::uint32_t i : members) {
-    slopes += std::hypot(edges.slope_x[i], edges.slope_y[i]);
+    const float slope = std::hypot(edges.slope_x[i], edges.slope_y[i]);
+    slopes += slope;
     if (is_amid_ground(edges.points.x[i], edges.points.y[i], surface)) ++through;
     const std::size_t cell = surface.cell_at(edges.points.x[i], edges.points.y[i]);
     const float height = edges.height[i];
@@ -70,11 +91,16 @@ void Surroundings::measure(Cluster& cluster, std::span<const std::uint32_t> memb
       spread += std::max(lowest_[cell] - height, 0.0F) + std::max(height - highest_[cell], 0.0F);
       lowest_[cell] = std::min(lowest_[cell], height);
       highest_[cell] = std::max(highest_[cell], height);
+      steepest_[cell] = std::max(steepest_[cell], slope);
       continue;
     }
     lowest_[cell] = highest_[cell] = height;
+    steepest_[cell] = slope;
     cells_.push_back(static_cast<std::uint32_t>(cell));
-    if (borders_on(cell, height > 0 ? below : above, surface.columns())) ++rim;
+    const std::uint8_t other = height > 0 ? below : above;
+    if (has_near(cell, kRim, surface, [&](std::size_t c) { return (sides_[c] & other) != 0; })) {
+      ++rim;
+    }
   }
   const auto cells = static_cast<float>(cells_.size());
   constexpr float kAround = 0.3F, kFurtherAround = 0.6F;
@@ -108,27 +134,47 @@ void Surroundings::measure(Cluster& cluster, std::span<const std::uint32_t> memb
   features[cell_points] = static_cast<float>(members.size()) / cells;
   features[cell_spread] = spread / cells;
   features[roughness] = uneven / std::max(level_cells, 1.0F);
+  values_.clear();
+  for (const std::uint32_t cell : cells_) values_.push_back(steepest_[cell]);
+  features[Feature::steepest] = quantile(values_, 0.9);
+  measure_edge(features, surface);
   measure_solidity(features, solidity);
+}
+
+/// A rock's edge is nearly as high as the rock, a mound begins low.
+void Surroundings::measure_edge(Features& features, const GroundSurface& surface) {
+  const auto is_ground = [&](std::size_t cell) {
+    return visited_[cell] != number_ && surface.points_in(cell) > 0 && surface.is_ground(cell);
+  };
+  const float half = half_height(features);
+  float high = 0;
+  values_.clear();
+  for (const std::uint32_t cell : cells_) {
+    if (!has_near(cell, 1, surface, is_ground)) continue;
+    const float height = std::max(highest_[cell], -lowest_[cell]);
+    values_.push_back(height);
+    if (height > half) ++high;
+  }
+  features[edge_share] = high / std::max(static_cast<float>(values_.size()), 1.0F);
+  features[edge_height] = values_.empty() ? 0 : quantile(values_, 0.5);
 }
 
 void Surroundings::measure_solidity(Features& features, const Solidity& solidity) {
   constexpr float kSolid = 0.7F;
-  const float half = std::max(features[max_height], -features[min_height]) / 2;
+  const float half = half_height(features);
   float solid = 0, ended = 0, top_ended = 0, top_passed = 0;
-  solidities_.clear();
+  values_.clear();
   for (const std::uint32_t cell : cells_) {
     if (solidity.of(cell) >= kSolid) ++solid;
-    solidities_.push_back(solidity.around(cell));
+    values_.push_back(solidity.around(cell));
     ended += solidity.ended(cell);
     if (std::max(highest_[cell], -lowest_[cell]) < half) continue;
     top_ended += solidity.ended(cell);
     top_passed += solidity.passed(cell);
   }
-  float* const quartile = solidities_.begin() + 3 * solidities_.size() / 4;
-  std::nth_element(solidities_.begin(), quartile, solidities_.end());
   features[solid_share] = solid / static_cast<float>(cells_.size());
   features[top_solidity] = Solidity::share(top_ended, top_passed);
-  features[core_solidity] = *quartile;
+  features[core_solidity] = quantile(values_, 0.75);
   features[beam_count] = ended;
 }
 

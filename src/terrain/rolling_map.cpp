@@ -161,7 +161,8 @@ void RollingMap::add(const DeskewedSweep& sweep, const Pose& pose, std::int64_t 
 }
 
 /// Follows some of the beams, others each sweep, to shortly before what they hit. What has moved
-/// away must stand clear of the hit, for poses err; grass is counted nearer to it.
+/// away must stand clear of the hit, for poses err; grass is counted nearer to it. Through grass as
+/// many beams pass below a blade as above it, over a rock only above: those below count for both.
 void RollingMap::see_through(const DeskewedSweep& sweep, const Eigen::Matrix3f& rotation,
                              const Eigen::Vector3f& translation) {
   constexpr std::uint16_t kEvery = 4;
@@ -190,8 +191,9 @@ void RollingMap::see_through(const DeskewedSweep& sweep, const Eigen::Matrix3f& 
       last = number;
       Voxel& voxel = voxels_[number - 1];
       const Eigen::Vector3f off = voxel.mean - from;
-      const float distance = (off - off.dot(along) * along).norm();
-      if (distance < through) count(voxel.beams, 0, kEvery);
+      const Eigen::Vector3f aside = off - off.dot(along) * along;  // from the beam to the mean
+      const float distance = aside.norm();
+      if (distance < through && aside.z() > 0) count(voxel.beams, 0, 2 * kEvery);
       if (distance < near && way < end && voxel.last_sweep != sweep_) ++voxel.passed;
     }
   }

@@ -28,6 +28,9 @@ enum Feature : std::size_t {
   top_solidity,   ///< of the beams to its cells that reach half its height: the share that ended
   core_solidity,  ///< upper quartile of Solidity::around() over its cells
   beam_count,     ///< beams that ended in it
+  steepest,       ///< of its cells: upper tenth of the steepest slope in each, metres per metre
+  edge_height,    ///< median height or depth of its cells next to seen ground, metres
+  edge_share,     ///< of those cells: that reach half its height
   kFeatures
 };
 inline constexpr std::size_t kPaperFeatures = 5;

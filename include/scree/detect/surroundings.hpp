@@ -18,8 +18,9 @@ public:
         visited_(max_cells),
         lowest_(max_cells),
         highest_(max_cells),
+        steepest_(max_cells),
         cells_(max_cells),
-        solidities_(max_cells),
+        values_(max_cells),
         ground_seen_(4 * max_cells) {}
 
   /// Notes where the ground itself was seen, and in which cells something stands above it or lies
@@ -39,13 +40,17 @@ private:
   std::size_t quarter_at(float x, float y, const GroundSurface& surface) const;
   bool is_amid_ground(float x, float y, const GroundSurface& surface) const;
   void measure_solidity(Features& features, const Solidity& solidity);
-  bool borders_on(std::size_t cell, std::uint8_t side, std::size_t columns) const;
+  void measure_edge(Features& features, const GroundSurface& surface);
+  template <class Is>
+  bool has_near(std::size_t cell, std::size_t reach, const GroundSurface& surface,
+                const Is& is) const;
 
   FixedVector<std::uint8_t> sides_;
   FixedVector<std::uint32_t> visited_;     // number of the last cluster that counted the cell
   FixedVector<float> lowest_, highest_;    // of that cluster's heights in it
+  FixedVector<float> steepest_;            // of its slopes in it
   FixedVector<std::uint32_t> cells_;       // of that cluster
-  FixedVector<float> solidities_;          // scratch: of these
+  FixedVector<float> values_;              // scratch: of these
   FixedVector<std::uint8_t> ground_seen_;  // in each quarter of a cell, row by row
   std::uint32_t number_ = 0;
 };

@@ -90,6 +90,27 @@ TEST(Surroundings, MeasuresTheShareOfTheBeamsThatEnded) {
   EXPECT_NEAR(grass[core_solidity], 0.25, 0.01);
 }
 
+TEST(Surroundings, ARocksEdgeIsHighAndAMoundsIsLow) {
+  const Features slab =
+      features_of(ground_with([](float x, float y, float) { return inside(x, y) ? 0.2F : 0.0F; }));
+  EXPECT_NEAR(slab[edge_height], 0.2, 0.01);
+  EXPECT_GT(slab[edge_share], 0.95);
+  EXPECT_GT(slab[steepest], 0.6);
+  EXPECT_LT(slab[steepness], 0.7 * slab[steepest]) << "its top is level";
+
+  constexpr float kSlope = 0.45F;
+  const Features mound = features_of(ground_with(
+      [](float x, float y, float) { return std::max(0.3F - kSlope * std::hypot(x, y), 0.0F); }));
+  EXPECT_LT(mound[edge_height], 0.12);
+  EXPECT_LT(mound[edge_share], 0.1);
+  EXPECT_NEAR(mound[steepest], kSlope, 0.1);
+
+  const Features pit =
+      features_of(ground_with([](float x, float y, float) { return inside(x, y) ? -0.2F : 0.0F; }));
+  EXPECT_NEAR(pit[edge_height], 0.2, 0.01);
+  EXPECT_GT(pit[edge_share], 0.95);
+}
+
 TEST(Surroundings, MeasuresHowUnevenTheGroundAroundIs) {
   const auto rock_on = [](float unevenness) {
     return features_of(ground_with([=](float x, float y, float chance) {

@@ -12,7 +12,8 @@ namespace {
 class Scene {
 public:
   bool has_box = true;
-  double blades = 0;  ///< met a metre of way; 0: the box is solid
+  double box_height = 0.5;  ///< metres
+  double blades = 0;        ///< met a metre of way; 0: the box is solid
 
   const RollingMap& map() const { return map_; }
 
@@ -56,15 +57,16 @@ public:
   }
 
 private:
-  // The box: its face 3 m ahead, 1 m wide, 0.5 m high, 0.5 m deep.
+  // The box: its face 3 m ahead, 1 m wide, 0.5 m deep.
   double cast(const Eigen::Vector3d& along) {
     double range = -kLidar.z() / along.z();
     if (!has_box) return range;
     const auto hits = [&](double way) {
       const Eigen::Vector3d at = kLidar + way * along;
-      return std::abs(at.y()) < 0.5 && at.z() < 0.5 + 1e-9 && at.x() > 3 - 1e-9 && at.x() < 3.5;
+      return std::abs(at.y()) < 0.5 && at.z() < box_height + 1e-9 && at.x() > 3 - 1e-9 &&
+             at.x() < 3.5;
     };
-    for (const double way : {3 / along.x(), (0.5 - kLidar.z()) / along.z()}) {
+    for (const double way : {3 / along.x(), (box_height - kLidar.z()) / along.z()}) {
       if (!hits(way)) continue;
       const double blade = blades > 0 ? way - std::log(1 - chance_(random_)) / blades : way;
       if (blade == way || blade < 3.5 / along.x()) range = std::min(range, blade);
@@ -109,6 +111,14 @@ TEST(RollingMapScene, CountsTheBeamsThatGrassLetsPass) {
   EXPECT_GT(box.counts().solidity(), 0.9);
   EXPECT_LT(dense.counts().solidity(), 0.75 * box.counts().solidity());
   EXPECT_LT(sparse.counts().solidity(), 0.5 * dense.counts().solidity());
+}
+
+// From afar the beams skim over its top.
+TEST(RollingMapScene, ALowBoxLetsNothingPass) {
+  Scene scene;
+  scene.box_height = 0.2;
+  scene.look(40);
+  EXPECT_GT(scene.counts().solidity(), 0.97);
 }
 
 TEST(RollingMapScene, TellsUnseenFromEmpty) {

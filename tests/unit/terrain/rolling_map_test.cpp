@@ -175,9 +175,9 @@ TEST_F(RollingMapTest, StaysConfirmedHoweverOftenItIsSeen) {
 }
 
 TEST_F(RollingMapTest, CountsTheBeamsThatEndedInAVoxelAndThoseThatPassedIt) {
-  const Eigen::Vector3d lidar(0, 0, 1), place(3, 0.02, 0.02);
+  const Eigen::Vector3d lidar(0, 0, 1), place(3.02, 0.02, 0.035);
   const auto along = (place - lidar).normalized();
-  const Eigen::Vector3d beside(0, 0.03, 0);
+  const Eigen::Vector3d beside(0, 0.03, 0), below(0, 0, -0.012);
   const auto beams_of = [&](std::size_t sweeps, const Eigen::Vector3d& farther) {
     map_ = RollingMap(settings_);
     for (std::size_t i = 0; i < sweeps; ++i) {
@@ -191,15 +191,16 @@ TEST_F(RollingMapTest, CountsTheBeamsThatEndedInAVoxelAndThoseThatPassedIt) {
     ADD_FAILURE() << "the place is not in the map";
     return BeamCount();
   };
-  // One beam of four is followed, and counts for four.
-  const BeamCount through = beams_of(40, place + 0.5 * along);
+  // One beam of four is followed, and counts for four, and for four more that passed above.
+  const BeamCount through = beams_of(40, place + 0.5 * along + below);
   EXPECT_EQ(through.ended, 40);
-  EXPECT_EQ(through.passed, 40);
-  EXPECT_EQ(beams_of(40, place + 0.08 * along).passed, 0) << "on the same surface";
-  EXPECT_EQ(beams_of(40, place + 0.5 * along + beside).passed, 0) << "past it";
-  const BeamCount many = beams_of(200'000, place + 0.5 * along);
+  EXPECT_EQ(through.passed, 80);
+  EXPECT_EQ(beams_of(40, place + 0.5 * along - below).passed, 0) << "over it, as over a rock";
+  EXPECT_EQ(beams_of(40, place + 0.08 * along + below).passed, 0) << "on the same surface";
+  EXPECT_EQ(beams_of(40, place + 0.5 * along + below + beside).passed, 0) << "past it";
+  const BeamCount many = beams_of(200'000, place + 0.5 * along + below);
   EXPECT_GT(many.ended, 10'000);
-  EXPECT_NEAR(static_cast<double>(many.passed) / many.ended, 1, 1e-3) << "fade alike";
+  EXPECT_NEAR(static_cast<double>(many.passed) / many.ended, 2, 1e-3) << "fade alike";
 }
 
 TEST_F(RollingMapTest, DropsAndCountsWhatFindsNoRoomAndRecovers) {
