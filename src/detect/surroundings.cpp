@@ -19,6 +19,20 @@ float half_height(const Features& features) {
   return std::max(features[max_height], -features[min_height]) / 2;
 }
 
+/// Whether a cell is `is`, or one up to `reach` cells from it.
+template <class Is>
+bool has_near(std::size_t cell, std::size_t reach, const GroundSurface& surface, const Is& is) {
+  const std::size_t columns = surface.columns(), rows = surface.rows();
+  const std::size_t column = cell % columns, row = cell / columns;
+  for (std::size_t v = row - std::min(row, reach); v <= std::min(row + reach, rows - 1); ++v) {
+    for (std::size_t u = column - std::min(column, reach);
+         u <= std::min(column + reach, columns - 1); ++u) {
+      if (is(v * columns + u)) return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 void Surroundings::build(PointView cloud, std::span<const float> heights, const EdgePoints& edges,
@@ -56,21 +70,6 @@ bool Surroundings::is_amid_ground(float x, float y, const GroundSurface& surface
     return (near[0] | near[right] | near[up * row] | near[right + up * row]) != 0;
   };
   return seen(1, 1) && seen(1, -1) && seen(-1, 1) && seen(-1, -1);
-}
-
-/// Whether a cell is `is`, or one up to `reach` cells from it.
-template <class Is>
-bool Surroundings::has_near(std::size_t cell, std::size_t reach, const GroundSurface& surface,
-                            const Is& is) const {
-  const std::size_t columns = surface.columns(), rows = surface.rows();
-  const std::size_t column = cell % columns, row = cell / columns;
-  for (std::size_t v = row - std::min(row, reach); v <= std::min(row + reach, rows - 1); ++v) {
-    for (std::size_t u = column - std::min(column, reach);
-         u <= std::min(column + reach, columns - 1); ++u) {
-      if (is(v * columns + u)) return true;
-    }
-  }
-  return false;
 }
 
 void Surroundings::measure(Cluster& cluster, std::span<const std::uint32_t> members,

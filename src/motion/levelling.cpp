@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "scree/core/rotation.hpp"
+#include "scree/motion/pose_filter.hpp"
 
 namespace scree {
 namespace {
@@ -12,10 +13,9 @@ namespace {
 constexpr double kGravity = 9.81;
 constexpr double kWindow = 1;  // seconds
 // Standard deviations.
-constexpr double kLean = 0.006;  // of the IMU's roll and pitch at the first sweep, rad ...
-constexpr double kLeanWalk =
-    0.0005;  // ... and how the map goes on from there, rad in a square root of a second
-constexpr double kBias = 0.03;   // of the accelerometer, m/s^2
+constexpr double kLean = PoseFilter::kTilt;  // of what the first sweep was laid by, rad ...
+constexpr double kLeanWalk = 0.0005;         // ... and since then, rad in a square root of a second
+constexpr double kBias = 0.03;               // of the accelerometer, m/s^2
 constexpr double kNoise = 0.05;  // of a window: vibration, slip and the wheel's steps, m/s^2
 constexpr double kFarthest = 5;  // in standard deviations: beyond it a window felt a shock
 
@@ -71,20 +71,17 @@ void Levelling::advance(const SyncBuffer& sensors, const MotionStep& step, const
                   seconds / 2};
   if (has_window_) window_ += half;
   if (!has_window_ || window_.seconds >= kWindow) {
-    if (has_window_) learn(velocity - velocity_before_);
+    if (has_window_) learn(velocity - velocity_before_, pose.translation);
     has_window_ = true;
     window_ = {};
     velocity_before_ = velocity;
   }
   window_ += half;
-
-  const Eigen::Vector3d place = to_odom_ * pose.translation;
-  to_odom_.rotation = exponential({states_[0], states_[1], 0});
-  to_odom_.translation = place - to_odom_.rotation * pose.translation;
 }
 
 /// @param faster by how much the IMU's velocity grew over the window, m/s
-void Levelling::learn(const Eigen::Vector3d& faster) {
+/// @param robot about which the map's frame is turned
+void Levelling::learn(const Eigen::Vector3d& faster, const Eigen::Vector3d& robot) {
   covariance_.topLeftCorner<2, 2>().diagonal().array() += kLeanWalk * kLeanWalk * window_.seconds;
   const Eigen::Vector2d gravity = ((window_.felt - faster) / window_.seconds).head<2>();
   // What turns the map's frame by the lean brings up to where gravity says it is.
@@ -99,6 +96,10 @@ void Levelling::learn(const Eigen::Vector3d& faster) {
   const Eigen::Matrix<double, kStates, 2> gain = covariance_ * sees.transpose() * inverse;
   states_ += gain * off;
   covariance_ -= (gain * sees * covariance_).eval();
+
+  const Eigen::Vector3d place = to_odom_ * robot;
+  to_odom_.rotation = exponential({states_[0], states_[1], 0});
+  to_odom_.translation = place - to_odom_.rotation * robot;
 }
 
 }  // namespace scree

@@ -12,8 +12,7 @@ namespace scree {
 namespace {
 
 // Standard deviations of what dead reckoning gets wrong.
-constexpr double kTilt = 0.006;        // of the IMU's roll and pitch, rad ...
-constexpr double kTiltSeconds = 20;    // ... which wander this fast
+constexpr double kTiltSeconds = 20;    // the IMU's roll and pitch wander this fast
 constexpr double kYawWalk = 0.0005;    // rad in a square root of a second
 constexpr double kDrift = 0.0015;      // of the yaw, rad/s
 constexpr double kDriftWalk = 0.0001;  // rad/s in a square root of a second

@@ -41,9 +41,6 @@ private:
   bool is_amid_ground(float x, float y, const GroundSurface& surface) const;
   void measure_solidity(Features& features, const Solidity& solidity);
   void measure_edge(Features& features, const GroundSurface& surface);
-  template <class Is>
-  bool has_near(std::size_t cell, std::size_t reach, const GroundSurface& surface,
-                const Is& is) const;
 
   FixedVector<std::uint8_t> sides_;
   FixedVector<std::uint32_t> visited_;     // number of the last cluster that counted the cell

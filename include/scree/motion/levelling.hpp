@@ -37,7 +37,7 @@ private:
     double seconds = 0;
     void operator+=(const Sums& other);
   };
-  void learn(const Eigen::Vector3d& faster);
+  void learn(const Eigen::Vector3d& faster, const Eigen::Vector3d& robot);
 
   Eigen::Vector3d imu_;
   States states_ = States::Zero();

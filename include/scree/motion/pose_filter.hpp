@@ -25,6 +25,7 @@ struct PoseEvidence {
 class PoseFilter {
 public:
   static constexpr int kErrors = 8;
+  static constexpr double kTilt = 0.006;  ///< standard deviation of the IMU's roll and pitch, rad
   using Errors = Eigen::Matrix<double, kErrors, 1>;
   using Covariance = Eigen::Matrix<double, kErrors, kErrors>;
 
