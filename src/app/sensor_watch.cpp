@@ -54,12 +54,18 @@ bool SensorWatch::update(std::int64_t now_ns, const SensorStatus& status, sensor
                          LogLines& log) {
   const std::int8_t before = health.state, clock_before = health.clock;
   fill(status, health);
+  if (status.last_heard_ns - last_heard_ns_ > kSilence) silent_since_ns_ = last_heard_ns_;
+  last_heard_ns_ = status.last_heard_ns;
+  if (status.last_message_ns != last_message_ns_) unclear_since_ns_ = 0;
+  last_message_ns_ = status.last_message_ns;
+  if (unclear_since_ns_ == 0 && last_heard_ns_ > last_message_ns_) {
+    unclear_since_ns_ = last_heard_ns_;
+  }
   measure(now_ns, status, health);
   const bool is_slow = judged_ == sensor_health_t::OK && is_slow_;
   health.state = is_slow ? sensor_health_t::SLOW : judged_;
 
   if (health.state != before) log.push_back(line_of(now_ns, status, health, before));
-  last_heard_ns_ = status.last_heard_ns;
   if (judged_ == sensor_health_t::NEVER_SEEN && !said_missing_ && now_ns - start_ns_ >= kSecond) {
     log.push_back({true, fmt::format("no {} have come yet: {}", terms_.messages, terms_.advice)});
     said_missing_ = true;
@@ -75,12 +81,13 @@ bool SensorWatch::update(std::int64_t now_ns, const SensorStatus& status, sensor
   return health.state != before || health.clock != clock_before;
 }
 
-std::int8_t SensorWatch::judge(std::int64_t now_ns, const SensorStatus& status) {
+std::int8_t SensorWatch::judge(std::int64_t now_ns, const SensorStatus& status) const {
   if (status.last_heard_ns == 0) return sensor_health_t::NEVER_SEEN;
   if (now_ns - status.last_heard_ns > kSilence) return sensor_health_t::SILENT;
   const bool is_understood =
       status.last_message_ns != 0 && now_ns - status.last_message_ns <= kSilence;
-  return is_understood ? sensor_health_t::OK : sensor_health_t::WRONG_DATA;
+  if (is_understood) return sensor_health_t::OK;
+  return now_ns - unclear_since_ns_ > kSilence ? sensor_health_t::WRONG_DATA : judged_;
 }
 
 void SensorWatch::measure(std::int64_t now_ns, const SensorStatus& status,
@@ -130,7 +137,7 @@ LogLine SensorWatch::line_of(std::int64_t now_ns, const SensorStatus& status,
       return {false, fmt::format("{} come and are understood", messages)};
     case sensor_health_t::SILENT:
       return {false, fmt::format("{} again after {:.1f} s", messages,
-                                 static_cast<double>(now_ns - last_heard_ns_) / kSecond)};
+                                 static_cast<double>(now_ns - silent_since_ns_) / kSecond)};
     case sensor_health_t::SLOW:
       return {false, fmt::format("{} as many as there should be again", messages)};
     default:

@@ -38,7 +38,7 @@ struct SensorStatus {
 /// |------------|--------------------------------------------------------------------|
 /// | NEVER_SEEN | nothing has come since the start                                   |
 /// | SILENT     | nothing for kSilence                                               |
-/// | WRONG_DATA | something comes, and nothing was understood for kSilence           |
+/// | WRONG_DATA | something has come for kSilence, and nothing of it was understood  |
 /// | SLOW       | under 90 % of the expected rate in a second, until 95 % come again |
 /// | OK         | else                                                               |
 class SensorWatch {
@@ -61,13 +61,15 @@ public:
 
 private:
   /// The state but for SLOW.
-  static std::int8_t judge(std::int64_t now_ns, const SensorStatus& status);
+  std::int8_t judge(std::int64_t now_ns, const SensorStatus& status) const;
   void measure(std::int64_t now_ns, const SensorStatus& status, sensor_health_t& health);
   LogLine line_of(std::int64_t now_ns, const SensorStatus& status, const sensor_health_t& health,
                   std::int8_t before) const;
 
   Terms terms_;
-  std::int64_t start_ns_, last_heard_ns_ = 0;
+  std::int64_t start_ns_, last_heard_ns_ = 0, last_message_ns_ = 0;
+  std::int64_t silent_since_ns_ = 0;   ///< of the last silence
+  std::int64_t unclear_since_ns_ = 0;  ///< nothing of what came from then on was understood
   bool said_missing_ = false;
 
   // The second over which the rate is measured; it begins anew when the state changes.

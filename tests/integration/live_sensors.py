@@ -36,7 +36,8 @@ class EmulatedMti:
         self.master, slave = os.openpty()
         os.symlink(os.ttyname(slave), self.port)
         os.close(slave)
-        threading.Thread(target=self._answer, args=[self.master], daemon=True).start()
+        self.answers = threading.Thread(target=self._answer, daemon=True)
+        self.answers.start()
 
     def unplug(self):
         with self.lock:
@@ -44,27 +45,29 @@ class EmulatedMti:
             os.remove(self.port)
             os.close(self.master)
             self.master = None
+        self.answers.join()
 
     def send(self, data):
         with self.lock:
             if self.measures.is_set():
-                os.write(self.master, data)
+                try:
+                    os.write(self.master, data)
+                except OSError:  # nobody has the port open
+                    self.measures.clear()
 
-    def _answer(self, master):
+    def _answer(self):
         heard = b""
         while True:
             time.sleep(0.005)
             with self.lock:
-                if self.master != master:
+                if self.master is None:
                     return
-                if not select.select([master], [], [], 0)[0]:
+                if not select.select([self.master], [], [], 0)[0]:
                     continue
                 try:
-                    heard += os.read(master, 4096)
+                    heard = self._respond(heard + os.read(self.master, 4096))
                 except OSError:  # nobody has the port open
                     self.measures.clear()
-                    continue
-                heard = self._respond(heard)
 
     def _respond(self, heard):
         """Answers all whole messages; gives what is left."""

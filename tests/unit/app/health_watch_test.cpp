@@ -130,6 +130,9 @@ TEST_F(HealthWatchTest, DatagramsThatAreNotPacketsAreWrongData) {
   datagram();
   status_.lidar.refused[static_cast<std::size_t>(velodyne::Refusal::size)] = 3;
   EXPECT_THAT(pass(10), HasSubstr("refused: not 1206 bytes long (3 more"));
+  pass(SensorWatch::kSilence / kMillisecond);
+  datagram();
+  pass(10);
   EXPECT_EQ(health_.lidar.state, sensor_health_t::WRONG_DATA);
   EXPECT_THAT(health_.reason, HasSubstr("not 1206 bytes long"));
   EXPECT_THAT(health_.lidar.refused_reason, Contains("size"));
@@ -243,6 +246,8 @@ TEST_F(HealthWatchTest, AnotherReasonAndAnotherStateOfAClockAreChanges) {
   EXPECT_TRUE(changed_);
   pass(1000);
   EXPECT_EQ(health_.state, health_t::BLIND);
+  datagram();
+  pass(SensorWatch::kSilence / kMillisecond);
   datagram();
   pass(10);
   EXPECT_EQ(health_.state, health_t::BLIND);

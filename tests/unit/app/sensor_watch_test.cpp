@@ -25,6 +25,16 @@ protected:
     }
     return log;
   }
+  /// And while as much comes that nobody understands.
+  std::string run_with_noise(std::int64_t milliseconds) {
+    std::string log;
+    for (const std::int64_t end = now_ + milliseconds * kMillisecond; now_ < end;) {
+      now_ += 50 * kMillisecond;
+      status_.last_heard_ns = now_;
+      log += look();
+    }
+    return log;
+  }
   std::string look() {
     LogLines lines;
     has_changed_ = watch_.update(now_, status_, health_, lines);
@@ -56,8 +66,7 @@ TEST_F(SensorWatchTest, GoesThroughItsStatesWithALineEach) {
 
 TEST_F(SensorWatchTest, WhatIsNotUnderstoodIsWrongData) {
   status_.refused = {{"size", "wrong size", 3}, {"sum", "wrong sum", 9}};
-  status_.last_heard_ns = now_;
-  const std::string log = look();
+  const std::string log = run_with_noise(300);
   EXPECT_EQ(health_.state, sensor_health_t::WRONG_DATA);
   EXPECT_TRUE(has_changed_);
   EXPECT_THAT(log, HasSubstr("W things from X are not understood (wrong sum)"));
@@ -66,6 +75,20 @@ TEST_F(SensorWatchTest, WhatIsNotUnderstoodIsWrongData) {
   EXPECT_THAT(health_.refused, ElementsAre(3, 9));
   EXPECT_EQ(health_.reasons, 2);
   EXPECT_EQ(run(50, 1), "I things from X are understood\n");
+}
+
+TEST_F(SensorWatchTest, HalfAMessageAtTheBeginningIsNoWrongData) {
+  EXPECT_EQ(run_with_noise(100), "");
+  EXPECT_EQ(health_.state, sensor_health_t::NEVER_SEEN);
+  EXPECT_EQ(run(50, 1), "I things from X come and are understood\n");
+  run(1000, 0);
+  EXPECT_EQ(run_with_noise(100), "");
+  EXPECT_EQ(health_.state, sensor_health_t::SILENT);
+  EXPECT_EQ(run(50, 1), "I things from X again after 1.1 s\n");
+  run_with_noise(200);
+  EXPECT_EQ(health_.state, sensor_health_t::OK);
+  run_with_noise(100);
+  EXPECT_EQ(health_.state, sensor_health_t::WRONG_DATA);
 }
 
 TEST_F(SensorWatchTest, IsSlowWhenATenthIsLostAndNotForLess) {
