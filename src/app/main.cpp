@@ -62,8 +62,10 @@ int check(const std::filesystem::path& file) {
   const auto config = scree::RunningConfig::read(file);
   if (!config) return failed(config.error().message);
   const scree::Settings& settings = config->settings();
-  for (const auto* detect : {&settings.detect_map, &settings.detect_sweep}) {
-    const auto network = scree::load_network(*detect, file.parent_path());
+  for (const std::string& name :
+       {settings.detect_map.network, settings.detect_sweep.network, settings.track.network}) {
+    if (name.empty()) continue;
+    const auto network = scree::load_network(name, file.parent_path());
     if (!network) return failed(network.error().message);
   }
   return kStopped;

@@ -4,16 +4,15 @@
 
 namespace scree {
 
-Result<Network> load_network(const DetectSettings& settings,
-                             const std::filesystem::path& config_folder) {
-  const auto file = find_file(settings.network, config_folder);
+Result<Network> load_network(const std::string& name, const std::filesystem::path& config_folder) {
+  const auto file = find_file(name, config_folder);
   if (!file) return tl::make_unexpected(file.error());
   return Network::load(*file);
 }
 
 Result<Detector> make_detector(const DetectSettings& settings,
                                const std::filesystem::path& config_folder) {
-  auto network = load_network(settings, config_folder);
+  auto network = load_network(settings.network, config_folder);
   if (!network) return tl::make_unexpected(network.error());
   return Detector(settings, *std::move(network));
 }
@@ -24,16 +23,24 @@ Result<Pipeline> Pipeline::make(const Settings& settings,
   if (!map_detector) return tl::make_unexpected(map_detector.error());
   auto sweep_detector = make_detector(settings.detect_sweep, config_folder);
   if (!sweep_detector) return tl::make_unexpected(sweep_detector.error());
-  return Pipeline(settings, *std::move(map_detector), *std::move(sweep_detector));
+  std::optional<Network> judge;
+  if (!settings.track.network.empty()) {
+    auto network = load_network(settings.track.network, config_folder);
+    if (!network) return tl::make_unexpected(network.error());
+    judge = *std::move(network);
+  }
+  return Pipeline(settings, *std::move(map_detector), *std::move(sweep_detector), std::move(judge));
 }
 
-Pipeline::Pipeline(const Settings& settings, Detector map_detector, Detector sweep_detector)
+Pipeline::Pipeline(const Settings& settings, Detector map_detector, Detector sweep_detector,
+                   std::optional<Network> judge)
     : lidar_(settings.lidar),
       sensors_(std::make_unique<SyncBuffer>()),
       mapper_(std::make_unique<Mapper>(settings)),
       map_detector_(std::move(map_detector)),
       sweep_detector_(std::move(sweep_detector)),
-      tracker_(settings.track, static_cast<std::size_t>(settings.detect_map.max_obstacles)),
+      tracker_(settings.track, static_cast<std::size_t>(settings.detect_map.max_obstacles),
+               std::move(judge)),
       sweep_(static_cast<std::size_t>(settings.detect_sweep.max_points)),
       found_(static_cast<std::size_t>(settings.detect_map.max_obstacles)),
       list_(static_cast<std::size_t>(settings.max_obstacles())) {}

@@ -252,7 +252,8 @@ std::optional<Error> missing_file(const Configuration& configuration,
       {"encoder.dbc", &settings.encoder.dbc},
       {"detect.cloud.network", &settings.detect_cloud.network},
       {"detect.map.network", &settings.detect_map.network},
-      {"detect.sweep.network", &settings.detect_sweep.network}};
+      {"detect.sweep.network", &settings.detect_sweep.network},
+      {"track.network", &settings.track.network}};
   for (const auto& [key, name] : files) {
     const Source source = configuration.source_of(key);
     if (source.is_default() || name->empty()) continue;

@@ -6,7 +6,8 @@ namespace scree {
 namespace {
 
 bool is_reloadable(const Key& key) {
-  return key.table == "stop" || key.table == "track" || (key.table == "map" && key.name == "wait");
+  return key.table == "stop" || (key.table == "track" && key.name != "network") ||
+         (key.table == "map" && key.name == "wait");
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 
 #include "scree/detect/pieces.hpp"
 
@@ -17,8 +18,10 @@ bool may_be_same(const Obstacle& a, const Obstacle& b) {
 
 }  // namespace
 
-Tracker::Tracker(const TrackingSettings& settings, std::size_t max_tracks)
+Tracker::Tracker(const TrackingSettings& settings, std::size_t max_tracks,
+                 std::optional<Network> judge)
     : settings_(settings),
+      judge_(std::move(judge)),
       tracks_(max_tracks),
       pairs_(16 * max_tracks),
       track_of_(max_tracks),
@@ -53,7 +56,7 @@ void Tracker::update(std::int64_t stamp_ns, const Eigen::Vector3d& robot,
       // From the future, too, when the clock was set back.
       if (std::abs(stamp_ns - track.found_ns) > remembered_ns) continue;
     }
-    if (track.confidence() < 0.02F) continue;
+    if (track.smoothed() < 0.02F) continue;
     tracks_[kept++] = track;
   }
   tracks_.resize(kept);
@@ -65,16 +68,15 @@ void Tracker::update(std::int64_t stamp_ns, const Eigen::Vector3d& robot,
     track.obstacle.id = 0;
     if (!tracks_.push_back(track)) ++dropped_;
   }
+  judge();
 
   obstacles.clear();
   for (Track& track : tracks_) {
-    const float confidence = track.confidence();
-    constexpr std::uint32_t kLeastFound = 2;
     if (track.is_published) {
-      track.is_published = confidence >= static_cast<float>(settings_.disappear);
+      track.is_published = track.confidence >= static_cast<float>(settings_.disappear);
     } else {
       track.is_published =
-          confidence >= static_cast<float>(settings_.appear) && track.found >= kLeastFound;
+          track.confidence >= static_cast<float>(settings_.appear) && track.found >= kLeastFound;
       if (track.is_published && track.obstacle.id == 0) track.obstacle.id = next_id_++;
     }
   }
@@ -82,7 +84,7 @@ void Tracker::update(std::int64_t stamp_ns, const Eigen::Vector3d& robot,
   for (const Track& track : tracks_) {
     if (!track.is_published) continue;
     published_.push_back(track.obstacle);
-    published_.back().confidence = track.confidence();
+    published_.back().confidence = track.confidence;
   }
   join_pieces(published_);
   remove_shadows(published_);
@@ -124,15 +126,37 @@ void Tracker::learn(Track& track, const Obstacle* found, float share) const {
   // The first answers count alike.
   const float weight =
       found != nullptr ? std::max(share, 1.0F / static_cast<float>(track.found + 1)) : share;
-  track.positive += weight * ((is_positive ? confidence : 0) - track.positive);
-  track.negative += weight * ((is_positive ? 0 : confidence) - track.negative);
+  float& positive = track.features[track_positive];
+  float& negative = track.features[track_negative];
+  positive += weight * ((is_positive ? confidence : 0) - positive);
+  negative += weight * ((is_positive ? 0 : confidence) - negative);
   if (found == nullptr) return;
   const std::int64_t id = track.obstacle.id;
   track.obstacle = *found;
   track.obstacle.id = id;
-  track.obstacle.kind =
-      track.negative > track.positive ? ObstacleKind::negative : ObstacleKind::positive;
   ++track.found;
+  float& best = track.features[track_best];
+  best = std::max(best, confidence);
+  track.features[track_height] = static_cast<float>(found->height);
+}
+
+/// Confidence and kind of every track.
+void Tracker::judge() {
+  for (Track& track : tracks_) {
+    constexpr double kFar = 3;
+    double surer = kFar;
+    for (const Track& other : tracks_) {
+      if (other.smoothed() <= track.smoothed()) continue;
+      const Eigen::Vector3d apart = other.obstacle.center - track.obstacle.center;
+      surer = std::min(surer, apart.head<2>().norm());
+    }
+    track.features[track_surer] = static_cast<float>(surer);
+    const Answer answer =
+        judge_ ? (*judge_)(track.features)
+               : Answer{track.features[track_positive], track.features[track_negative]};
+    track.confidence = answer.confidence();
+    track.obstacle.kind = answer.kind();
+  }
 }
 
 }  // namespace scree

@@ -59,7 +59,8 @@ void keep_config(const fs::path& config, const fs::path& folder) {
   const Settings& settings = configuration.settings;
   std::string toml = text_of(config, configuration);
   const std::set<std::string> names = {settings.encoder.dbc, settings.detect_cloud.network,
-                                       settings.detect_map.network, settings.detect_sweep.network};
+                                       settings.detect_map.network, settings.detect_sweep.network,
+                                       settings.track.network};
   for (const std::string& name : names) {
     const fs::path source = config.parent_path() / name;
     std::error_code error;

@@ -1,9 +1,13 @@
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <map>
+#include <vector>
 
 #include "commands.hpp"
 #include "progress.hpp"
+#include "scree/app/pipeline.hpp"
 #include "scree/config/keys.hpp"
 #include "scree/learn/metrics.hpp"
 #include "scree/learn/training.hpp"
@@ -25,8 +29,10 @@ struct TrainOptions {
   TrainingSettings learn;
 };
 
-const std::map<std::string, Profile> kProfiles = {
-    {"cloud", Profile::cloud}, {"map", Profile::map}, {"sweep", Profile::sweep}};
+const std::map<std::string, Profile> kProfiles = {{"cloud", Profile::cloud},
+                                                  {"map", Profile::map},
+                                                  {"sweep", Profile::sweep},
+                                                  {"track", Profile::track}};
 const std::map<std::string, InputForm> kForms = {{"raw", InputForm::raw},
                                                  {"log1p", InputForm::log1p}};
 
@@ -41,29 +47,31 @@ std::string name_in(const std::map<std::string, Value>& names, Value value) {
 struct Part {
   std::string name;
   SeedRange seeds;
-  LabelledClusters clusters;
+  LabelledClusters labelled;
 
   std::size_t count(Label label) const {
     return static_cast<std::size_t>(
-        std::ranges::count(clusters.samples, label, [](const Sample& s) { return s.label; }));
+        std::ranges::count(labelled.samples, label, [](const Sample& s) { return s.label; }));
   }
 };
 
 Part make_part(const std::string& name, std::uint64_t number, std::size_t count,
-               const TrainOptions& options, const Settings& settings) {
+               const TrainOptions& options, const Settings& settings, const Network& clusters) {
   Part part{name, {options.seed + number * kPart, count}, {}};
-  Progress progress("clusters for " + name, count);
-  part.clusters = make_data_set(options.profile, settings, part.seeds, std::ref(progress));
+  Progress progress((options.profile == Profile::track ? "tracks for " : "clusters for ") + name,
+                    count);
+  part.labelled =
+      make_data_set(options.profile, settings, part.seeds, std::ref(progress), clusters);
   return part;
 }
 
 std::string describe(const Part& part) {
   return fmt::format(
-      "{:<10} seeds {}-{}: {} clusters (positive {}, negative {}, none {}); {} of {} obstacles "
-      "have a cluster\n",
+      "{:<10} seeds {}-{}: {} samples (positive {}, negative {}, none {}); {} of {} obstacles "
+      "have one\n",
       part.name, part.seeds.first, part.seeds.first + part.seeds.count - 1,
-      part.clusters.samples.size(), part.count(Label::positive), part.count(Label::negative),
-      part.count(Label::none), part.clusters.found, part.clusters.obstacles);
+      part.labelled.samples.size(), part.count(Label::positive), part.count(Label::negative),
+      part.count(Label::none), part.labelled.found, part.labelled.obstacles);
 }
 
 std::string table_of(const Scores& scores) {
@@ -85,7 +93,7 @@ std::string provenance(const TrainOptions& options, const DetectSettings& detect
                        const Scores& scores) {
   const std::string profile = name_in(kProfiles, options.profile);
   std::string text = fmt::format(
-      "Network for {}s, trained by Levenberg-Marquardt on clusters of simulated terrain.\n"
+      "Network for {}s, trained by Levenberg-Marquardt on simulated terrain.\n"
       "scree train --profile {}{} --seed {} --training {} --validation {} --held-out {} --hidden "
       "{} --inputs {} "
       "--restarts {} --counts {}\n\n",
@@ -97,9 +105,10 @@ std::string provenance(const TrainOptions& options, const DetectSettings& detect
                       result.curve.size() - 1, result.best, name_of(result.stop),
                       result.curve[result.best].training_error,
                       result.curve[result.best].validation_error);
-  text += "Clusters of the held-out part:\n" + table_of(scores);
+  text += "Samples of the held-out part:\n" + table_of(scores);
   text += "\nThe detector's settings:\n";
-  for_each_detect_key("detect." + profile, detect, [&](const Key& key, const auto& value) {
+  const std::string table = options.profile == Profile::track ? "map" : profile;
+  for_each_detect_key("detect." + table, detect, [&](const Key& key, const auto& value) {
     using Value = std::decay_t<decltype(value)>;
     if constexpr (std::is_enum_v<Value>) {
       text += fmt::format("{} = \"{}\"\n", key.name, name_of(value));
@@ -110,6 +119,21 @@ std::string provenance(const TrainOptions& options, const DetectSettings& detect
   return text;
 }
 
+void set_inputs(TrainOptions& options) {
+  TrainingSettings& learn = options.learn;
+  learn.forms.fill(InputForm::raw);
+  if (options.profile == Profile::track) {
+    learn.inputs = std::min<std::size_t>(learn.inputs, kTrackFeatures);
+    for (const TrackFeature share : {track_positive, track_negative, track_best}) {
+      learn.forms[share] = InputForm::logit;
+    }
+    return;
+  }
+  for (const Feature count : {acute_count, obtuse_count, beam_count}) {
+    learn.forms[count] = options.counts;
+  }
+}
+
 void run(TrainOptions options) {
   Settings settings;
   settings.lidar = scene_lidar();
@@ -118,27 +142,34 @@ void run(TrainOptions options) {
     if (!loaded) throw Failure(loaded.error().message);
     settings = *loaded;
   }
-  const DetectSettings& detect = options.profile == Profile::cloud ? settings.detect_cloud
-                                 : options.profile == Profile::map ? settings.detect_map
-                                                                   : settings.detect_sweep;
-  if (options.out.empty()) options.out = "config/" + detect.network;
+  const bool is_track = options.profile == Profile::track;
+  const DetectSettings& detect = options.profile == Profile::cloud   ? settings.detect_cloud
+                                 : options.profile == Profile::sweep ? settings.detect_sweep
+                                                                     : settings.detect_map;
+  if (options.out.empty()) {
+    options.out = "config/" + (is_track ? settings.track.network : detect.network);
+  }
   options.learn.seed = options.seed;
-  for (const Feature count : {acute_count, obtuse_count, beam_count}) {
-    options.learn.forms[count] = options.counts;
+  set_inputs(options);
+  Network clusters;
+  if (is_track) {
+    clusters = value_or_fail(
+        load_network(detect.network, std::filesystem::path(options.config).parent_path()));
   }
 
   const std::vector<Part> parts = {
-      make_part("training", 0, options.training, options, settings),
-      make_part("validation", 1, options.validation, options, settings),
-      make_part("held-out", 2, options.held_out, options, settings)};
+      make_part("training", 0, options.training, options, settings, clusters),
+      make_part("validation", 1, options.validation, options, settings, clusters),
+      make_part("held-out", 2, options.held_out, options, settings, clusters)};
   for (const Part& part : parts) fmt::print("{}", describe(part));
-  if (parts[0].clusters.samples.empty()) {
+  if (parts[0].labelled.samples.empty()) {
     throw Failure("the detector found no cluster to train on, see its settings");
   }
   const TrainedNetwork trained =
-      train_network(parts[0].clusters.samples, parts[1].clusters.samples, options.learn);
-  const Scores scores = evaluate(trained.network, parts[2].clusters.samples, detect.min_confidence);
-  fmt::print("\nclusters of the held-out part:\n{}", table_of(scores));
+      train_network(parts[0].labelled.samples, parts[1].labelled.samples, options.learn);
+  const Scores scores = evaluate(trained.network, parts[2].labelled.samples,
+                                 is_track ? settings.track.appear : detect.min_confidence);
+  fmt::print("\nsamples of the held-out part:\n{}", table_of(scores));
 
   const auto saved =
       trained.network.save(options.out, provenance(options, detect, parts, trained.result, scores));
@@ -151,7 +182,7 @@ void run(TrainOptions options) {
 void add_train(CLI::App& app) {
   auto* command = app.add_subcommand("train", "trains the network on simulated terrain");
   auto options = std::make_shared<TrainOptions>();
-  command->add_option("--profile", options->profile, "cloud, map or sweep")
+  command->add_option("--profile", options->profile, "cloud, map, sweep or track")
       ->transform(CLI::CheckedTransformer(kProfiles))
       ->default_str("cloud");
   command->add_option("--config", options->config, "the detector's settings, and the lidar's mount")
@@ -183,7 +214,7 @@ void add_train(CLI::App& app) {
       ->capture_default_str();
   command
       ->add_option("--counts", options->counts,
-                   "how counts (F4, F5, beam_count) enter: raw or log1p")
+                   "how counts of points and beams enter: raw or log1p")
       ->transform(CLI::CheckedTransformer(kForms))
       ->default_str("log1p");
   command->callback([options] { run(*options); });

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "scoring/pose_error.hpp"
 #include "scree/app/pipeline.hpp"
@@ -90,6 +91,15 @@ std::vector<TerrainFeature> as_believed(const std::vector<TerrainFeature>& featu
   return moved;
 }
 
+CaptureSettings training_drive(std::uint64_t seed) {
+  CaptureSettings drawn;
+  drawn.seed = seed;
+  drawn.scene = kScenes[seed % kScenes.size()];
+  drawn.seconds = 10;
+  drawn.at_rest = seed % 12 == 11;
+  return drawn;
+}
+
 class FromDrives {
 public:
   explicit FromDrives(const Settings& settings) : settings_(settings) {}
@@ -97,12 +107,7 @@ public:
   LabelledClusters operator()(std::uint64_t seed) {
     constexpr int kEvery = 5;  // sweeps
     constexpr double kLeastPiece = 0.25;
-    CaptureSettings drawn;
-    drawn.seed = seed;
-    drawn.scene = kScenes[seed % kScenes.size()];
-    drawn.seconds = 10;
-    drawn.at_rest = seed % 12 == 11;
-    const Drive drive(drawn);
+    const Drive drive(training_drive(seed));
     const Settings settings = with_sensors_of(drive.robot, settings_);
     Pipeline pipeline(settings, Detector(settings.detect_map, Network()),
                       Detector(settings.detect_sweep, Network()));
@@ -125,13 +130,47 @@ private:
   Settings settings_;
 };
 
-/// In the order of the seeds.
-template <class From>
-LabelledClusters gather(const Settings& settings, SeedRange seeds,
-                        const std::function<void(std::size_t)>& progress) {
+class FromTracks {
+public:
+  FromTracks(const Settings& settings, const Network& clusters)
+      : settings_(settings), clusters_(clusters) {}
+
+  LabelledClusters operator()(std::uint64_t seed) {
+    constexpr int kEvery = 3;  // sweeps
+    const Drive drive(training_drive(seed));
+    const Settings settings = with_sensors_of(drive.robot, settings_);
+    Pipeline pipeline(settings, Detector(settings.detect_map, clusters_),
+                      Detector(settings.detect_sweep, Network()));
+    DriveFeed feed(drive);
+    Sweep sweep(static_cast<std::size_t>(settings.map.max_points));
+    std::set<int> known;
+    LabelledClusters all;
+    for (int i = 1; feed.next(sweep, {&pipeline.sensors()}); ++i) {
+      pipeline.process(sweep);
+      const std::vector<int>& asked = feed.truth().visible.back().ids;
+      known.insert(asked.begin(), asked.end());
+      if (i % kEvery != 0) continue;
+      const Truth truth{
+          feed.truth().obstacles, {{sweep.end_ns, drive.motion.base(sweep.end_ns)}}, {}};
+      all += label_tracks(pipeline.tracker().tracks(), settings.track.reach,
+                          pipeline.mapper().pose(), sweep.end_ns, truth, known);
+    }
+    return all;
+  }
+
+private:
+  Settings settings_;
+  Network clusters_;
+};
+
+/// In the order of the seeds. @param arguments of the constructor of From
+template <class From, class... Arguments>
+LabelledClusters gather(SeedRange seeds, const std::function<void(std::size_t)>& progress,
+                        const Arguments&... arguments) {
   std::vector<LabelledClusters> parts(seeds.count);
   const auto make_work = [&] {
-    return [&, from = From(settings)](std::size_t i) mutable { parts[i] = from(seeds.first + i); };
+    return
+        [&, from = From(arguments...)](std::size_t i) mutable { parts[i] = from(seeds.first + i); };
   };
   in_parallel(seeds.count, make_work, progress);
   LabelledClusters all;
@@ -142,16 +181,19 @@ LabelledClusters gather(const Settings& settings, SeedRange seeds,
 }  // namespace
 
 LabelledClusters make_data_set(Profile profile, const Settings& settings, SeedRange seeds,
-                               const std::function<void(std::size_t)>& progress) {
+                               const std::function<void(std::size_t)>& progress,
+                               const Network& clusters) {
   switch (profile) {
     case Profile::cloud:
-      return gather<FromClouds>(settings, seeds, progress);
+      return gather<FromClouds>(seeds, progress, settings);
     case Profile::map:
-      return gather<FromDrives>(settings, seeds, progress);
+      return gather<FromDrives>(seeds, progress, settings);
+    case Profile::track:
+      return gather<FromTracks>(seeds, progress, settings, clusters);
     case Profile::sweep:
       break;
   }
-  return gather<FromSweeps>(settings, seeds, progress);
+  return gather<FromSweeps>(seeds, progress, settings);
 }
 
 }  // namespace scree

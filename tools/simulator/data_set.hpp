@@ -9,8 +9,9 @@
 
 namespace scree {
 
-/// What the clusters come from: reconstructed clouds, maps that grow on a drive, or single sweeps.
-enum class Profile : std::uint8_t { cloud, map, sweep };
+/// What the clusters come from: reconstructed clouds, maps that grow on a drive, or single sweeps;
+/// or the tracks of what is found in those maps.
+enum class Profile : std::uint8_t { cloud, map, sweep, track };
 
 /// Seeds from `first` on.
 struct SeedRange {
@@ -29,9 +30,11 @@ CloudSettings varied_cloud(std::uint64_t seed);
 /// varied_cloud()s of varied_terrain()s; maps are those of the pipeline after every half second of
 /// drives through all scenes, with robots as the simulator draws them; sweeps are one turn at 5, 10
 /// or 20 Hz of the lidar that `settings` describes, and only obstacles that it shows well enough
-/// (see Visibility) are asked for.
+/// (see Visibility) are asked for. Tracks are those after every third sweep of such drives.
 /// @param progress called after each seed with the number done
+/// @param clusters for tracks: what judges the clusters that they follow
 LabelledClusters make_data_set(Profile profile, const Settings& settings, SeedRange seeds,
-                               const std::function<void(std::size_t)>& progress);
+                               const std::function<void(std::size_t)>& progress,
+                               const Network& clusters = Network());
 
 }  // namespace scree

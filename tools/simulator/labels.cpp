@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+
+#include "scoring/matching.hpp"
 
 namespace scree {
 namespace {
@@ -30,6 +33,10 @@ const TerrainFeature* feature_of(const Cluster& cluster, const Detector& detecto
     if (2 * static_cast<std::size_t>(covered) >= members.size()) return &feature;
   }
   return nullptr;
+}
+
+Label label_of(ObstacleKind kind) {
+  return kind == ObstacleKind::positive ? Label::positive : Label::negative;
 }
 
 /// The rim of a hole is no hole, and a hollow beside a rock no rock.
@@ -78,6 +85,45 @@ LabelledClusters label_clusters(const Detector& detector, std::span<const Terrai
     labelled.samples.push_back(named.sample);
   }
   for (const int id : asked) labelled.found += largest[static_cast<std::size_t>(id)] > 0 ? 1U : 0U;
+  return labelled;
+}
+
+LabelledClusters label_tracks(std::span<const Tracker::Track> tracks, double reach,
+                              const Pose& base, std::int64_t stamp_ns, const Truth& truth,
+                              const std::set<int>& known) {
+  Truth::Sight sight{stamp_ns, {known.begin(), known.end()}, {}};
+  for (const TrueObstacle& each : truth.obstacles) {
+    if (!known.contains(each.id)) sight.ignore.push_back(each.id);
+  }
+  std::vector<const Tracker::Track*> surest_first;
+  for (const Tracker::Track& track : tracks) {
+    const bool is_near = (track.obstacle.center - base.translation).head<2>().norm() <= reach;
+    if (is_near && track.found >= Tracker::kLeastFound) surest_first.push_back(&track);
+  }
+  std::ranges::stable_sort(surest_first, std::ranges::greater(), &Tracker::Track::smoothed);
+  LabelledClusters labelled;
+  labelled.obstacles = known.size();
+  std::set<int> found;
+  ObstacleList list(1);
+  list.stamp_ns = stamp_ns;
+  list.pose = base;
+  for (const Tracker::Track* track : surest_first) {
+    list.obstacles.clear();
+    list.obstacles.push_back(track->obstacle);
+    list.obstacles[0].kind =
+        track->obstacle.height > 0 ? ObstacleKind::positive : ObstacleKind::negative;
+    const Comparison comparison = compare(truth, sight, list);
+    const auto right = std::ranges::find(comparison.asked, true, &Comparison::Asked::is_right);
+    Label label = Label::none;
+    if (right != comparison.asked.end()) {
+      const bool is_first = found.insert(right->obstacle->id).second;
+      if (is_first) label = label_of(right->obstacle->kind);
+    } else if (comparison.false_alarms.empty()) {
+      continue;
+    }
+    labelled.samples.push_back({track->features, label});
+  }
+  labelled.found = found.size();
   return labelled;
 }
 

@@ -2,6 +2,8 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "scree/config/settings.hpp"
 #include "scree/core/obstacle.hpp"
@@ -23,8 +25,10 @@ public:
   /// @param config_folder where a relative name of a weights file is looked for first
   static Result<Pipeline> make(const Settings& settings,
                                const std::filesystem::path& config_folder);
-  /// With detectors made elsewhere, of settings.detect_map and settings.detect_sweep.
-  Pipeline(const Settings& settings, Detector map_detector, Detector sweep_detector);
+  /// With detectors made elsewhere, of settings.detect_map and settings.detect_sweep, and the judge
+  /// of tracks, if any.
+  Pipeline(const Settings& settings, Detector map_detector, Detector sweep_detector,
+           std::optional<Network> judge = std::nullopt);
 
   /// Where the IMU's and the encoder's threads put their samples.
   SyncBuffer& sensors() { return *sensors_; }
@@ -70,9 +74,8 @@ private:
   bool uses_map_ = false, has_looked_ = false;
 };
 
-/// The weights of a set of stages.
-Result<Network> load_network(const DetectSettings& settings,
-                             const std::filesystem::path& config_folder);
+/// The weights in a file that a setting names.
+Result<Network> load_network(const std::string& name, const std::filesystem::path& config_folder);
 /// A detector with its weights, for clouds (detect.cloud), the map (detect.map) or sweeps
 /// (detect.sweep).
 Result<Detector> make_detector(const DetectSettings& settings,

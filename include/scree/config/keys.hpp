@@ -232,11 +232,13 @@ void for_each_key(AnySettings& settings, Visit&& visit) {
 
   table = "track";
   auto& track = settings.track;
+  key("network", track.network, "", 0, 0,
+      "file of the weights of the network that judges what is followed; empty: its confidence, "
+      "smoothed, decides (then 0.7 and 0.45 suit below)");
   key("smoothing", track.smoothing, "", 0.01, 1,
       "share of the newest answer in an obstacle's confidence: lower flickers less and answers "
       "later");
-  key("appear", track.appear, "", 0, 1,
-      "an obstacle is published from this smoothed confidence on");
+  key("appear", track.appear, "", 0, 1, "an obstacle is published from this confidence on");
   key("disappear", track.disappear, "", 0, 1, "... and until it falls below this");
   key("remember", track.remember, "s", 0, 60,
       "an obstacle that is not found any more stays this long, unless its place was seen empty");

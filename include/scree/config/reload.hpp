@@ -9,7 +9,7 @@
 namespace scree {
 
 /// The keys that a running daemon takes over, in words.
-inline constexpr std::string_view kReloadableKeys = "[stop], [track] and map.wait";
+inline constexpr std::string_view kReloadableKeys = "[stop], [track] but its network, and map.wait";
 
 /// A configuration that was read anew, beside the one that runs.
 struct Reload {

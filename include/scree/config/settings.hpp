@@ -152,9 +152,10 @@ struct MapSettings {
 
 /// Obstacles followed from list to list.
 struct TrackingSettings {
+  std::string network = "network_track.txt";
   double smoothing = 0.4;
-  double appear = 0.7;
-  double disappear = 0.45;
+  double appear = 0.45;
+  double disappear = 0.35;
   double remember = 1.0;
   double reach = 10;
 };

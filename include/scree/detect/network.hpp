@@ -29,8 +29,9 @@ struct Answer {
 
 /// How a feature enters the network before it is centred and scaled.
 enum class InputForm : std::uint8_t {
-  raw,   ///< as it is
-  log1p  ///< log(1 + x); for counts, which span decades from a sparse sweep to a dense cloud
+  raw,    ///< as it is
+  log1p,  ///< log(1 + x); for counts, which span decades from a sparse sweep to a dense cloud
+  logit   ///< log((x + 0.01) / (1.01 - x)), x cut to 0..1; for confidences, whose ends matter most
 };
 
 /// The paper's network (section 3.1, fig. 9): features in, the paper's five or more, one hidden

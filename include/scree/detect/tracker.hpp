@@ -4,21 +4,52 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 
 #include "scree/config/settings.hpp"
 #include "scree/core/fixed_vector.hpp"
 #include "scree/core/obstacle.hpp"
 #include "scree/core/sight.hpp"
+#include "scree/detect/network.hpp"
 
 namespace scree {
 
+/// What the network that judges tracks is told of one.
+enum TrackFeature : std::size_t {
+  track_positive,  ///< confidence, smoothed over lists
+  track_negative,  ///< the same of a hole
+  track_best,      ///< most confidence of any list
+  track_height,    ///< above the surrounding ground, as found last, metres
+  track_surer,     ///< to the middle of the nearest track with more confidence, at most 3 m
+  kTrackFeatures
+};
+static_assert(std::size_t{kTrackFeatures} <= Features().size(),
+              "they are the first inputs of a network");
+
 /// Follows obstacles from list to list, in a frame that stays. An obstacle keeps its id; it appears
-/// when its confidence, smoothed over lists, has grown enough and it was found more than once, and
-/// goes when the confidence has fallen, at once where its place was seen empty.
+/// when its confidence has grown enough and it was found more than once, and goes when the
+/// confidence has fallen, soon where its place was seen empty.
 class Tracker {
 public:
-  Tracker(const TrackingSettings& settings, std::size_t max_tracks);
+  static constexpr std::uint32_t kLeastFound = 2;  ///< lists that have a published obstacle
+
+  struct Track {
+    Obstacle obstacle;        ///< as found last
+    Features features{};      ///< by TrackFeature
+    float confidence = 0;     ///< of its kind, as judged
+    std::uint32_t found = 0;  ///< lists that had it
+    std::int64_t found_ns = 0;
+    bool is_published = false;
+    bool is_matched = false;
+
+    /// Confidence by the detector's answers alone.
+    float smoothed() const { return std::max(features[track_positive], features[track_negative]); }
+  };
+
+  /// @param judge says from a track's features how sure it is; without, its smoothed confidence
+  Tracker(const TrackingSettings& settings, std::size_t max_tracks,
+          std::optional<Network> judge = std::nullopt);
 
   /// @param robot where it is, in the map's frame
   /// @param found every candidate of this list with its confidence, also low ones, in that frame
@@ -30,22 +61,14 @@ public:
   void set(const TrackingSettings& settings) { settings_ = settings; }
   void clear() { tracks_.clear(); }
 
+  /// All that are followed, those not published too; valid until the next update().
+  std::span<const Track> tracks() const { return {tracks_.data(), tracks_.size()}; }
+
   /// Candidates that no track had room for, pairs of track and candidate beyond those compared, and
   /// obstacles that did not fit into a list.
   std::uint64_t dropped() const { return dropped_; }
 
 private:
-  struct Track {
-    Obstacle obstacle;   // as found last
-    float positive = 0;  // confidences, smoothed
-    float negative = 0;
-    std::uint32_t found = 0;
-    std::int64_t found_ns = 0;
-    bool is_published = false;
-    bool is_matched = false;
-
-    float confidence() const { return std::max(positive, negative); }
-  };
   struct Pair {
     float distance;
     std::uint32_t track, found;
@@ -53,8 +76,10 @@ private:
 
   void match(std::span<const Obstacle> found);
   void learn(Track& track, const Obstacle* found, float share) const;
+  void judge();
 
   TrackingSettings settings_;
+  std::optional<Network> judge_;
   FixedVector<Track> tracks_;
   FixedVector<Pair> pairs_;
   FixedVector<std::int32_t> track_of_;  // of each found one, -1 for none

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include "allocation_counter.hpp"
 #include "scree/drivers/velodyne/lidar_stream.hpp"
 #include "velodyne/packet_builder.hpp"
@@ -55,6 +57,17 @@ TEST(Pipeline, CountsPointsBeyondItsMemory) {
   pipeline.process(sweep_of({{1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}}));
   EXPECT_EQ(pipeline.counts().input, 4U);
   EXPECT_EQ(pipeline.counts().dropped, 2U);
+}
+
+TEST(Pipeline, TheNetworkOfTracksMayBeLeftOutButNotMissing) {
+  const std::string folder = std::string(SCREE_SOURCE) + "/config";
+  Settings settings;
+  settings.track.network = "nowhere.txt";
+  const auto made = Pipeline::make(settings, folder);
+  ASSERT_FALSE(made);
+  EXPECT_NE(made.error().message.find("nowhere.txt"), std::string::npos) << made.error().message;
+  settings.track.network.clear();
+  EXPECT_TRUE(Pipeline::make(settings, folder));
 }
 
 TEST(Pipeline, NothingIsAllocatedFromPacketToListAfterTheStart) {

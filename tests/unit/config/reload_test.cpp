@@ -30,11 +30,12 @@ TEST(Reload, TakesOverWhatCanChangeAndNamesWhatCannot) {
   wanted.map.wait = 0.2;
   wanted.map.voxel = 0.2;
   wanted.track.reach = 3;
+  wanted.track.network = "other.txt";
   wanted.detect_map.network = "other.txt";
   const Reload change = reload(running, wanted);
   EXPECT_THAT(change.applied, ElementsAre("stop.length", "map.wait", "track.reach"));
   EXPECT_THAT(change.refused, ElementsAre("lidar.model", "lidar.port", "lidar.translation",
-                                          "map.voxel", "detect.map.network"));
+                                          "map.voxel", "detect.map.network", "track.network"));
   EXPECT_EQ(change.settings.lidar.port, 4000);
   EXPECT_EQ(change.settings.stop.length, 7);
   EXPECT_EQ(change.settings.track.reach, 3);

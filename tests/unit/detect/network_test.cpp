@@ -113,6 +113,17 @@ TEST(Network, RefusalsNameFileLineAndReason) {
   EXPECT_FALSE(Network::load("/"));
 }
 
+TEST(Network, FormsAreWhatTheySay) {
+  EXPECT_EQ(apply(InputForm::raw, -3), -3);
+  EXPECT_DOUBLE_EQ(apply(InputForm::log1p, 3), std::log(4));
+  EXPECT_EQ(apply(InputForm::log1p, -3), 0);
+  EXPECT_DOUBLE_EQ(apply(InputForm::logit, 0.5F), 0);
+  EXPECT_NEAR(apply(InputForm::logit, 1), std::log(101), 1e-9);
+  EXPECT_NEAR(apply(InputForm::logit, 0.25F), -apply(InputForm::logit, 0.75F), 1e-12);
+  EXPECT_EQ(apply(InputForm::logit, -7), apply(InputForm::logit, 0)) << "cut to 0..1";
+  EXPECT_EQ(apply(InputForm::logit, 7), apply(InputForm::logit, 1));
+}
+
 TEST(Network, AnswersStayBetweenZeroAndOneWhateverTheFeatures) {
   Network network = random_network(Network::kMaxHidden);
   constexpr float kInf = std::numeric_limits<float>::infinity();

@@ -288,7 +288,75 @@ TEST_F(TrackerTest, GoesOnWhenTheClockIsSet) {
   }
 }
 
+TEST_F(TrackerTest, ATracksFeaturesAreWhatTheySayTheyAre) {
+  Obstacle first = at(3, 1, 0.8F), then = at(3, 1, 0.5F), surer = at(3.6, 1.8);
+  then.height = 0.3;
+  surer.center.z() = 7;
+  update({first, surer});
+  update({then, surer});
+  ASSERT_EQ(tracker_.tracks().size(), 2U);
+  const Tracker::Track& track = tracker_.tracks()[0];
+  EXPECT_EQ(track.found, 2U);
+  // The first two answers count alike.
+  EXPECT_NEAR(track.features[track_positive], 0.65, 1e-6);
+  EXPECT_EQ(track.features[track_negative], 0);
+  EXPECT_NEAR(track.smoothed(), 0.65, 1e-6);
+  EXPECT_FLOAT_EQ(track.features[track_best], 0.8F);
+  EXPECT_FLOAT_EQ(track.features[track_height], 0.3F);
+  EXPECT_NEAR(track.features[track_surer], 1, 1e-6) << "on the ground, not upwards";
+  EXPECT_EQ(tracker_.tracks()[1].features[track_surer], 3) << "none is surer";
+  update({surer});
+  EXPECT_LT(tracker_.tracks()[0].features[track_positive], 0.65);
+  EXPECT_FLOAT_EQ(tracker_.tracks()[0].features[track_best], 0.8F);
+}
+
+// A rock only where something is high, a hole only where it is deep.
+Network judge() {
+  constexpr double kSure = 1000;
+  Network network(2, kTrackFeatures);
+  network.forms.fill(InputForm::raw);
+  const std::span<double> weights = network.weights();
+  constexpr std::size_t kRow = kTrackFeatures + 1;
+  weights[track_height] = kSure;
+  weights[kTrackFeatures] = -0.6 * kSure;
+  weights[kRow + track_height] = -kSure;
+  weights[kRow + kTrackFeatures] = -0.6 * kSure;
+  // Outputs: what the units say, 0 or 1, becomes sigmoid(-3) or sigmoid(3).
+  for (std::size_t output = 0; output < Network::kOutputs; ++output) {
+    weights[network.output_row(output) + output] = 6;
+    weights[network.output_row(output) + 2] = -3;
+  }
+  return network;
+}
+
+TEST_F(TrackerTest, AJudgeDecidesWhatIsPublishedAndAsWhat) {
+  tracker_ = Tracker(settings_, kMost, judge());
+  EXPECT_EQ(update({at(3, 1, 0.99F)}, 10).size(), 0U) << "sure, but the judge says no";
+  Obstacle high = at(3, 1, 0.2F);
+  high.height = 0.7;
+  ASSERT_EQ(update({high}).size(), 1U) << "unsure, but the judge says yes";
+  EXPECT_EQ(list_[0].kind, ObstacleKind::positive);
+  EXPECT_NEAR(list_[0].confidence, 1 / (1 + std::exp(-3)), 1e-6);
+  tracker_ = Tracker(settings_, kMost, judge());
+  Obstacle deep = at(3, 1);
+  deep.height = -0.7;
+  update({deep}, 2);
+  ASSERT_EQ(list_.size(), 1U);
+  EXPECT_EQ(list_[0].kind, ObstacleKind::negative) << "whatever the detector says";
+}
+
+TEST_F(TrackerTest, WhatTheDetectorNoLongerFindsGoesWhateverTheJudgeSays) {
+  tracker_ = Tracker(settings_, kMost, judge());
+  Obstacle high = at(3, 1);
+  high.height = 1;
+  update({high}, 10);
+  ASSERT_EQ(list_.size(), 1U);
+  sight_ = Sight::empty;
+  EXPECT_LE(updates_until(0, {}), 4);
+}
+
 TEST_F(TrackerTest, AllocatesNothing) {
+  tracker_ = Tracker(settings_, kMost, judge());
   const std::vector<Obstacle> found(kMost, at(3, 1));
   const std::size_t before = test::allocations();
   update(found, 20);

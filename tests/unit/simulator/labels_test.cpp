@@ -154,5 +154,81 @@ TEST_F(Labels, CountsWhatIsAskedForAndFound) {
   EXPECT_EQ(all.samples.size(), 4U);
 }
 
+/// A rock at x = 3, a hole at 5 and a rock at 7, of 0.6 m, and the tracks of a robot at 1.
+class TrackLabels : public testing::Test {
+protected:
+  TrackLabels() {
+    for (int id = 1; id <= 3; ++id) {
+      const double x = 1 + 2 * id;
+      TrueObstacle obstacle;
+      obstacle.id = id;
+      obstacle.kind = id == 2 ? ObstacleKind::negative : ObstacleKind::positive;
+      obstacle.center = {x, 0, 0};
+      obstacle.footprint = rectangle(x - 0.3, -0.3, x + 0.3, 0.3);
+      truth_.obstacles.push_back(obstacle);
+    }
+    base_.translation.x() = 1;
+    truth_.poses = {{kStamp, base_}};
+  }
+
+  void add(double x, double height, float confidence = 0.9F, std::uint32_t found = 5) {
+    Tracker::Track track;
+    track.obstacle.center = {x, 0, 0};
+    track.obstacle.extent = {0.4, 0.4, 0.4};
+    track.obstacle.height = height;
+    track.features[height > 0 ? track_positive : track_negative] = confidence;
+    track.found = found;
+    tracks_.push_back(track);
+  }
+  LabelledClusters label(const std::set<int>& known, double reach = 10) const {
+    return label_tracks(tracks_, reach, base_, kStamp, truth_, known);
+  }
+  std::vector<Label> labels(const std::set<int>& known, double reach = 10) const {
+    std::vector<Label> labels;
+    for (const Sample& sample : label(known, reach).samples) labels.push_back(sample.label);
+    return labels;
+  }
+
+  static constexpr std::int64_t kStamp = 1'000'000'000;
+  Truth truth_;
+  Pose base_;
+  std::vector<Tracker::Track> tracks_;
+};
+
+TEST_F(TrackLabels, SayWhatTheContractWould) {
+  add(3.1, 0.3);
+  add(5.1, -0.3);
+  add(9, 0.3);
+  EXPECT_THAT(labels({1, 2}), UnorderedElementsAre(Label::positive, Label::negative, Label::none));
+  EXPECT_EQ(label({1, 2}).obstacles, 2U);
+  EXPECT_EQ(label({1, 2, 3}).found, 2U);
+}
+
+TEST_F(TrackLabels, TheRimOfAHoleIsNoRock) {
+  add(5.1, 0.1);
+  EXPECT_THAT(labels({1, 2, 3}), ElementsAre(Label::none));
+}
+
+TEST_F(TrackLabels, OfSeveralTracksOfARockTheSurestIsIt) {
+  add(3, 0.3, 0.6F);
+  add(3.2, 0.3, 0.8F);
+  const LabelledClusters labelled = label({1});
+  ASSERT_EQ(labelled.samples.size(), 2U);
+  for (const Sample& sample : labelled.samples) {
+    EXPECT_EQ(sample.label, sample.features[track_positive] > 0.7F ? Label::positive : Label::none);
+  }
+  EXPECT_EQ(labelled.found, 1U);
+}
+
+TEST_F(TrackLabels, LeaveOutWhatIsNotKnownYetOrFarOrFoundOnce) {
+  add(7, 0.3);
+  EXPECT_THAT(labels({1, 2}), IsEmpty()) << "not known";
+  EXPECT_THAT(labels({3}), ElementsAre(Label::positive));
+  EXPECT_THAT(labels({3}, 5.9), IsEmpty()) << "far";
+  tracks_.clear();
+  add(3, 0.3, 0.9F, 1);
+  EXPECT_THAT(labels({1}), IsEmpty()) << "found once";
+}
+
 }  // namespace
 }  // namespace scree
