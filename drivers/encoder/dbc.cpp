@@ -89,9 +89,9 @@ Result<DbcSignal> find_signal(std::string_view dbc, std::string_view name,
 }
 
 Result<EncoderSettings> with_dbc(const EncoderSettings& settings,
-                                 const std::filesystem::path& config_folder) {
+                                 const std::filesystem::path& config_file) {
   if (settings.dbc.empty()) return settings;
-  const auto file = find_file(settings.dbc, config_folder);
+  const auto file = find_file(settings.dbc, config_file);
   if (!file) return tl::make_unexpected(file.error());
   std::ifstream stream(*file, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(stream), {}};

@@ -65,7 +65,7 @@ int check(const std::filesystem::path& file) {
   for (const std::string& name :
        {settings.detect_map.network, settings.detect_sweep.network, settings.track.network}) {
     if (name.empty()) continue;
-    const auto network = scree::load_network(name, file.parent_path());
+    const auto network = scree::load_network(name, file);
     if (!network) return failed(network.error().message);
   }
   return kStopped;
@@ -77,7 +77,7 @@ int run(const std::filesystem::path& file) {
   const scree::Settings& settings = config->settings();
   auto lines = scree::gpio::Lines::open(settings.gpio);  // stop is on from here
   if (!lines) return failed(lines.error().message);
-  auto pipeline = scree::Pipeline::make(settings, file.parent_path());
+  auto pipeline = scree::Pipeline::make(settings, file);
   if (!pipeline) return failed(pipeline.error().message);
 
   pipeline->time_stages(scree::steady_ns);

@@ -4,28 +4,28 @@
 
 namespace scree {
 
-Result<Network> load_network(const std::string& name, const std::filesystem::path& config_folder) {
-  const auto file = find_file(name, config_folder);
+Result<Network> load_network(const std::string& name, const std::filesystem::path& config_file) {
+  const auto file = find_file(name, config_file);
   if (!file) return tl::make_unexpected(file.error());
   return Network::load(*file);
 }
 
 Result<Detector> make_detector(const DetectSettings& settings,
-                               const std::filesystem::path& config_folder) {
-  auto network = load_network(settings.network, config_folder);
+                               const std::filesystem::path& config_file) {
+  auto network = load_network(settings.network, config_file);
   if (!network) return tl::make_unexpected(network.error());
   return Detector(settings, *std::move(network));
 }
 
 Result<Pipeline> Pipeline::make(const Settings& settings,
-                                const std::filesystem::path& config_folder) {
-  auto map_detector = make_detector(settings.detect_map, config_folder);
+                                const std::filesystem::path& config_file) {
+  auto map_detector = make_detector(settings.detect_map, config_file);
   if (!map_detector) return tl::make_unexpected(map_detector.error());
-  auto sweep_detector = make_detector(settings.detect_sweep, config_folder);
+  auto sweep_detector = make_detector(settings.detect_sweep, config_file);
   if (!sweep_detector) return tl::make_unexpected(sweep_detector.error());
   std::optional<Network> judge;
   if (!settings.track.network.empty()) {
-    auto network = load_network(settings.track.network, config_folder);
+    auto network = load_network(settings.track.network, config_file);
     if (!network) return tl::make_unexpected(network.error());
     judge = *std::move(network);
   }

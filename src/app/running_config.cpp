@@ -19,7 +19,7 @@ Result<RunningConfig> RunningConfig::read(const std::filesystem::path& file) {
   const auto configuration = read_configuration(file);
   if (!configuration) return tl::make_unexpected(configuration.error());
   const Settings& written = configuration->settings;
-  auto encoder = encoder::with_dbc(written.encoder, file.parent_path());
+  auto encoder = encoder::with_dbc(written.encoder, file);
   if (!encoder) {
     return fail(fmt::format("{}: {}", configuration->source_of("encoder.signal").text(),
                             encoder.error().message));

@@ -246,7 +246,7 @@ std::vector<std::filesystem::path> drop_ins(std::filesystem::path file) {
 
 /// Of the files that keys name; those of the defaults come with Scree.
 std::optional<Error> missing_file(const Configuration& configuration,
-                                  const std::filesystem::path& folder) {
+                                  const std::filesystem::path& config_file) {
   const Settings& settings = configuration.settings;
   const std::pair<const char*, const std::string*> files[] = {
       {"encoder.dbc", &settings.encoder.dbc},
@@ -257,7 +257,7 @@ std::optional<Error> missing_file(const Configuration& configuration,
   for (const auto& [key, name] : files) {
     const Source source = configuration.source_of(key);
     if (source.is_default() || name->empty()) continue;
-    if (const auto found = find_file(*name, folder); !found) {
+    if (const auto found = find_file(*name, config_file); !found) {
       return Error{fmt::format("{}: {}: {}", source.text(), key, found.error().message)};
     }
   }
@@ -282,7 +282,7 @@ Result<Configuration> read_configuration(const std::filesystem::path& file) {
     if (!mistake) mistake = read_over(drop_in, configuration);
   }
   if (!mistake) mistake = mistake_of(configuration, file.string());
-  if (!mistake) mistake = missing_file(configuration, file.parent_path());
+  if (!mistake) mistake = missing_file(configuration, file);
   if (mistake) return tl::make_unexpected(*mistake);
   return configuration;
 }

@@ -53,14 +53,14 @@ DetectSettings DetectSettings::for_sweep() {
 }
 
 Result<std::filesystem::path> find_file(const std::string& name,
-                                        const std::filesystem::path& config_folder) {
+                                        const std::filesystem::path& config_file) {
   namespace fs = std::filesystem;
   std::error_code ignored;
   const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
   const fs::path shipped = program.parent_path().parent_path() / "share" / "scree";
-  for (const fs::path& folder : {config_folder, shipped}) {
-    const fs::path candidate = folder / name;
-    if (fs::is_regular_file(candidate, ignored)) return candidate;
+  for (const fs::path& candidate : {config_file.parent_path() / name, shipped / name}) {
+    const bool has_folder = !config_file.empty() || candidate.is_absolute();
+    if (has_folder && fs::is_regular_file(candidate, ignored)) return candidate;
   }
   return fail(
       fmt::format("cannot find {} beside the configuration file or in {}", name, shipped.string()));

@@ -66,9 +66,9 @@ void warn_of_losses(const StageCounts& counts, std::string_view what) {
   warn(counts.obstacles_dropped, "obstacles beyond max_obstacles were dropped");
 }
 
-/// Where relative names of a configuration are looked for.
-fs::path settings_folder(const DetectOptions& options) {
-  return settings_file(options.input, options.config).value_or(fs::path()).parent_path();
+/// Empty without one.
+fs::path config_file(const DetectOptions& options) {
+  return settings_file(options.input, options.config).value_or(fs::path());
 }
 
 void detect_in_cloud(const DetectOptions& options) {
@@ -78,7 +78,7 @@ void detect_in_cloud(const DetectOptions& options) {
   // At the desk there is time: nothing of the file is left out.
   DetectSettings settings = all.detect_cloud;
   settings.max_points = std::max(settings.max_points, static_cast<int>(cloud->size()));
-  auto detector = make_detector(settings, settings_folder(options));
+  auto detector = make_detector(settings, config_file(options));
   if (!detector) throw Failure(detector.error().message);
 
   ListWriter writer(options.out);
@@ -95,7 +95,7 @@ void detect_in_cloud(const DetectOptions& options) {
 void detect_in_capture(const DetectOptions& options) {
   const Settings settings = capture_settings(options.input, options.config);
   LidarCapture capture(options.input, settings);
-  auto pipeline = Pipeline::make(settings, settings_folder(options));
+  auto pipeline = Pipeline::make(settings, config_file(options));
   if (!pipeline) throw Failure(pipeline.error().message);
   MotionCapture motion(options.input, options.config, settings, pipeline->sensors());
 

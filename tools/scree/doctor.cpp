@@ -71,8 +71,7 @@ private:
                                             "; until --config names one this goes by the "
                                             "defaults"));
     }
-    const auto encoder =
-        encoder::with_dbc(loaded->encoder, fs::path(options_.config).parent_path());
+    const auto encoder = encoder::with_dbc(loaded->encoder, options_.config);
     settings_ = std::move(*loaded);
     if (!encoder) return add(wrong("configuration", encoder.error().message));
     settings_.encoder = *encoder;

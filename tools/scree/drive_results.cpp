@@ -23,7 +23,7 @@ struct DriveResult {
 };
 
 Pipeline make_pipeline(const Settings& settings, const StudyTask& task) {
-  return value_or_fail(Pipeline::make(settings, task.config_folder));
+  return value_or_fail(Pipeline::make(settings, task.config_file));
 }
 
 ObstacleList copy_of(const ObstacleList& list) {

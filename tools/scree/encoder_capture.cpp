@@ -39,9 +39,8 @@ std::string refused_lines(const CanLogReader& log) {
 }  // namespace
 
 EncoderSettings encoder_settings(const fs::path& capture, const fs::path& config) {
-  const auto file = settings_file(capture, config);
   return value_or_fail(encoder::with_dbc(capture_settings(capture, config).encoder,
-                                         file ? file->parent_path() : fs::path()));
+                                         settings_file(capture, config).value_or(fs::path())));
 }
 
 EncoderCapture::EncoderCapture(const fs::path& capture, const EncoderSettings& settings)

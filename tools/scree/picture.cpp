@@ -49,7 +49,7 @@ private:
 Ground ground_of_capture(const PictureOptions& options) {
   const Settings settings = capture_settings(options.input, options.config);
   const auto config = settings_file(options.input, options.config);
-  auto pipeline = Pipeline::make(settings, config ? config->parent_path() : "");
+  auto pipeline = Pipeline::make(settings, config.value_or(""));
   if (!pipeline) throw Failure(pipeline.error().message);
   SweepChoice choice;
   velodyne::LidarStream stream(settings.lidar, [&](Sweep& sweep) { choice.take(sweep); });

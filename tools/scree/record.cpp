@@ -84,7 +84,7 @@ double run(const std::vector<Recorder*>& recorders, double longest, Report& repo
 void record(const RecordOptions& options) {
   const Settings settings = value_or_fail(load_settings(options.config));
   const fs::path config = options.config, folder = options.folder;
-  value_or_fail(encoder::with_dbc(settings.encoder, config.parent_path()));
+  value_or_fail(encoder::with_dbc(settings.encoder, config));
   LidarRecorder lidar(settings.lidar);
   make_capture_folder(folder);
   keep_config(config, folder);

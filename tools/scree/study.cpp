@@ -63,7 +63,7 @@ void run(const StudyOptions& options) {
     const auto loaded = load_settings(options.config);
     if (!loaded) throw Failure(loaded.error().message);
     task.settings = *loaded;
-    task.config_folder = std::filesystem::path(options.config).parent_path();
+    task.config_file = options.config;
   }
   std::error_code failed;
   std::filesystem::create_directories(task.out, failed);
@@ -86,7 +86,7 @@ std::vector<Way> both_ways(const StudyTask& task) {
 }
 
 Detector detector_of(const DetectSettings& settings, const StudyTask& task) {
-  auto detector = make_detector(settings, task.config_folder);
+  auto detector = make_detector(settings, task.config_file);
   if (!detector) throw Failure(detector.error().message);
   return *std::move(detector);
 }

@@ -18,8 +18,8 @@ namespace scree::cli {
 
 /// What every study is told.
 struct StudyTask {
-  std::filesystem::path out;            ///< folder, there
-  std::filesystem::path config_folder;  ///< where relative names of weights are looked for
+  std::filesystem::path out;          ///< folder, there
+  std::filesystem::path config_file;  ///< beside which weights are looked for; or empty
   Settings settings;
   SeedRange seeds;           ///< terrains that nothing was trained on
   std::size_t training = 0;  ///< terrains to train on, where a study trains

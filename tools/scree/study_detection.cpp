@@ -38,7 +38,7 @@ std::vector<CloudScores> score_clouds(const std::vector<Way>& ways, const StudyT
 
 /// One turn of a lidar at rest, in all scenes.
 Scorer score_sweeps(const StudyTask& task) {
-  auto pipeline = Pipeline::make(task.settings, task.config_folder);
+  auto pipeline = Pipeline::make(task.settings, task.config_file);
   if (!pipeline) throw Failure(pipeline.error().message);
   Scorer scorer;
   Progress progress("sweeps", task.seeds.count);

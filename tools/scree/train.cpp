@@ -153,8 +153,7 @@ void run(TrainOptions options) {
   set_inputs(options);
   Network clusters;
   if (is_track) {
-    clusters = value_or_fail(
-        load_network(detect.network, std::filesystem::path(options.config).parent_path()));
+    clusters = value_or_fail(load_network(detect.network, options.config));
   }
 
   const std::vector<Part> parts = {

@@ -22,9 +22,9 @@ namespace scree {
 /// is taken once, in make().
 class Pipeline {
 public:
-  /// @param config_folder where a relative name of a weights file is looked for first
-  static Result<Pipeline> make(const Settings& settings,
-                               const std::filesystem::path& config_folder);
+  /// @param config_file beside which a relative name of a weights file is looked for first; may be
+  /// empty
+  static Result<Pipeline> make(const Settings& settings, const std::filesystem::path& config_file);
   /// With detectors made elsewhere, of settings.detect_map and settings.detect_sweep, and the judge
   /// of tracks, if any.
   Pipeline(const Settings& settings, Detector map_detector, Detector sweep_detector,
@@ -75,10 +75,10 @@ private:
 };
 
 /// The weights in a file that a setting names.
-Result<Network> load_network(const std::string& name, const std::filesystem::path& config_folder);
+Result<Network> load_network(const std::string& name, const std::filesystem::path& config_file);
 /// A detector with its weights, for clouds (detect.cloud), the map (detect.map) or sweeps
 /// (detect.sweep).
 Result<Detector> make_detector(const DetectSettings& settings,
-                               const std::filesystem::path& config_folder);
+                               const std::filesystem::path& config_file);
 
 }  // namespace scree

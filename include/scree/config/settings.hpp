@@ -253,7 +253,8 @@ std::string default_settings_toml();
 
 /// Where a shipped or configured file lies: as given when absolute, else beside the configuration
 /// file, else in <program>/../share/scree.
+/// @param config_file empty without one
 Result<std::filesystem::path> find_file(const std::string& name,
-                                        const std::filesystem::path& config_folder);
+                                        const std::filesystem::path& config_file);
 
 }  // namespace scree

@@ -30,7 +30,7 @@ Settings settings() {
 }
 
 Pipeline pipeline_of(const Settings& settings) {
-  auto made = Pipeline::make(settings, std::string(SCREE_SOURCE) + "/config");
+  auto made = Pipeline::make(settings, std::string(SCREE_SOURCE) + "/config/scree.toml");
   EXPECT_TRUE(made) << made.error().message;
   return *std::move(made);
 }

@@ -60,14 +60,14 @@ TEST(Pipeline, CountsPointsBeyondItsMemory) {
 }
 
 TEST(Pipeline, TheNetworkOfTracksMayBeLeftOutButNotMissing) {
-  const std::string folder = std::string(SCREE_SOURCE) + "/config";
+  const std::string config_file = std::string(SCREE_SOURCE) + "/config/scree.toml";
   Settings settings;
   settings.track.network = "nowhere.txt";
-  const auto made = Pipeline::make(settings, folder);
+  const auto made = Pipeline::make(settings, config_file);
   ASSERT_FALSE(made);
   EXPECT_NE(made.error().message.find("nowhere.txt"), std::string::npos) << made.error().message;
   settings.track.network.clear();
-  EXPECT_TRUE(Pipeline::make(settings, folder));
+  EXPECT_TRUE(Pipeline::make(settings, config_file));
 }
 
 TEST(Pipeline, NothingIsAllocatedFromPacketToListAfterTheStart) {

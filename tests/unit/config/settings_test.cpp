@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "scree/config/keys.hpp"
+#include "unit/temporary_folder.hpp"
 
 namespace scree {
 namespace {
@@ -87,6 +88,25 @@ TEST(Settings, MissingFileIsOneSentence) {
   const auto settings = load_settings("/nonexistent/scree.toml");
   ASSERT_FALSE(settings);
   EXPECT_THAT(settings.error().message, HasSubstr("/nonexistent/scree.toml"));
+}
+
+TEST(FindFile, LooksBesideTheConfigurationThenBesideTheProgram) {
+  const TemporaryFolder folder;
+  const auto own = folder.write("network_map.txt", "");
+  EXPECT_EQ(find_file("network_map.txt", folder / "robot.toml"), own);
+  EXPECT_EQ(find_file(own.string(), ""), own);
+
+  std::filesystem::current_path(folder / "");
+  EXPECT_EQ(find_file("network_map.txt", "robot.toml"), "network_map.txt");
+  const auto shipped = find_file("network_map.txt", "");
+  std::filesystem::current_path("/");
+  ASSERT_TRUE(shipped) << shipped.error().message;
+  EXPECT_EQ(shipped->parent_path().filename(), "scree")
+      << "a file that lies in the current folder by chance is not taken";
+
+  const auto missing = find_file("nowhere.txt", folder / "robot.toml");
+  ASSERT_FALSE(missing);
+  EXPECT_THAT(missing.error().message, HasSubstr("cannot find nowhere.txt"));
 }
 
 TEST(Settings, DefaultFileReadsBackAndIsStable) {

@@ -138,7 +138,8 @@ EncoderSettings settings_for(const std::string& signal, EncoderKind kind, double
 TEST(WithDbc, FillsInTheSettings) {
   const TemporaryFolder folder;
   folder.write("robot.dbc", kDbc);
-  const auto filled = with_dbc(settings_for("Drive.Way", EncoderKind::counter, 1.01), folder / "");
+  const auto filled =
+      with_dbc(settings_for("Drive.Way", EncoderKind::counter, 1.01), folder / "robot.toml");
   ASSERT_TRUE(filled) << filled.error().message;
   EXPECT_EQ(filled->can_id, 0x18FF50E5);
   EXPECT_TRUE(filled->has_extended_id());
@@ -149,14 +150,14 @@ TEST(WithDbc, FillsInTheSettings) {
   EXPECT_EQ(filled->offset, 1.5);
   EXPECT_EQ(filled->scale, 1.01);
   const EncoderSettings without;
-  EXPECT_EQ(with_dbc(without, "/nonexistent")->can_id, without.can_id);
+  EXPECT_EQ(with_dbc(without, "/nonexistent/robot.toml")->can_id, without.can_id);
 }
 
 TEST(WithDbc, AScaleThatCannotBeForTheUnitIsRefused) {
   const TemporaryFolder folder;
   folder.write("robot.dbc", kDbc);
   const auto error = [&](const std::string& signal, EncoderKind kind, double scale) {
-    const auto filled = with_dbc(settings_for(signal, kind, scale), folder / "");
+    const auto filled = with_dbc(settings_for(signal, kind, scale), folder / "robot.toml");
     return filled ? "no error" : filled.error().message;
   };
   const std::string left = "WHEEL_SPEEDS.FRONT_LEFT";
@@ -169,7 +170,8 @@ TEST(WithDbc, AScaleThatCannotBeForTheUnitIsRefused) {
 }
 
 TEST(WithDbc, AMissingFileIsOneSentence) {
-  const auto filled = with_dbc(settings_for("A.B", EncoderKind::counter, 1), "/nonexistent");
+  const auto filled =
+      with_dbc(settings_for("A.B", EncoderKind::counter, 1), "/nonexistent/robot.toml");
   ASSERT_FALSE(filled);
   EXPECT_THAT(filled.error().message, HasSubstr("robot.dbc"));
 }

@@ -38,7 +38,7 @@ EncoderSettings wheel(const std::string& signal) {
   settings.kind = EncoderKind::speed;
   settings.scale = 1 / 3.6;
   settings.max_speed = 70;
-  const auto filled = with_dbc(settings, shared("can"));
+  const auto filled = with_dbc(settings, shared("can/robot.toml"));
   EXPECT_TRUE(filled) << filled.error().message;
   return filled.value_or(settings);
 }

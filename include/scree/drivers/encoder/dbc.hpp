@@ -33,8 +33,8 @@ Result<DbcSignal> find_signal(std::string_view dbc, std::string_view name,
 /// Settings with the place of the signal from their DBC file; as they are where they name none.
 /// `scale` then multiplies the physical value, whose unit is often km/h: a sentence too where that
 /// unit is known and the scale cannot be meant for it, or for this kind.
-/// @param config_folder where the configuration lies, for a relative path
+/// @param config_file beside which a relative path is looked for first; may be empty
 Result<EncoderSettings> with_dbc(const EncoderSettings& settings,
-                                 const std::filesystem::path& config_folder);
+                                 const std::filesystem::path& config_file);
 
 }  // namespace scree::encoder
