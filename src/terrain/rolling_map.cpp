@@ -157,10 +157,11 @@ void RollingMap::add(const DeskewedSweep& sweep, const Pose& pose, std::int64_t 
   }
   see_through(sweep, rotation, translation);
   forget(pose);
-  gather_cloud();
+  gather_cloud(translation);
 }
 
-/// Follows some of the beams, others each sweep, to shortly before what they hit. What has moved
+/// Follows some of the beams, others each sweep, to shortly before what they hit, farther off
+/// through the last metres of where obstacles are searched for, too. What has moved
 /// away must stand clear of the hit, for poses err; grass is counted nearer to it. Through grass as
 /// many beams pass below a blade as above it, over a rock only above: those below count for both.
 void RollingMap::see_through(const DeskewedSweep& sweep, const Eigen::Matrix3f& rotation,
@@ -171,6 +172,7 @@ void RollingMap::see_through(const DeskewedSweep& sweep, const Eigen::Matrix3f& 
   constexpr float kFartherOn = 0.12F, kThrough = 0.4F;  // metres behind it, and of a voxel
   const auto voxel_size = static_cast<float>(settings_.voxel);
   const auto reach = static_cast<float>(settings_.reach);
+  const auto search_reach = static_cast<float>(settings_.search_reach);
   const Eigen::Vector3f shift = origin_.cast<float>();
   const float near = kBeam * voxel_size, through = kThrough * voxel_size;
   for (std::size_t i = sweep_ % kEvery; i < sweep.points.size(); i += kEvery) {
@@ -180,12 +182,13 @@ void RollingMap::see_through(const DeskewedSweep& sweep, const Eigen::Matrix3f& 
     const float range = beam.norm();
     const float end = std::min(range - std::max(kClear, kClearShare * range), reach);
     const Eigen::Vector3f along = beam / range;
-    for (float way = 0; way < end; way += FreeSpace::kCell) {
+    for (float way = 0; way < std::min(end, search_reach); way += FreeSpace::kCell) {
       free_space_.pass(from + way * along + shift, sweep_);
     }
     std::uint32_t last = 0;
     const float grass_end = std::min(range - kFartherOn, reach);
-    for (float way = std::max(0.0F, end - kSeenThrough); way < grass_end; way += voxel_size) {
+    const float begin = std::max(0.0F, std::min(end, search_reach) - kSeenThrough);
+    for (float way = begin; way < grass_end; way += voxel_size) {
       const std::uint32_t number = index_[slot_of(key_of(from + way * along))];
       if (number == 0 || number == last) continue;
       last = number;
@@ -245,11 +248,13 @@ bool RollingMap::is_confirmed(const Voxel& voxel) const {
   return false;
 }
 
-void RollingMap::gather_cloud() {
+void RollingMap::gather_cloud(const Eigen::Vector3f& here) {
   cloud_.clear();
   beams_.clear();
+  const auto reach = static_cast<float>(settings_.search_reach);
   for (const Voxel& voxel : voxels_) {
-    if (!is_confirmed(voxel)) continue;
+    const bool is_far = (voxel.mean - here).squaredNorm() > reach * reach;
+    if (is_far || !is_confirmed(voxel)) continue;
     cloud_.push_back(voxel.mean.x(), voxel.mean.y(), voxel.mean.z(), voxel.reflectivity);
     beams_.push_back(voxel.beams);
   }

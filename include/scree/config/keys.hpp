@@ -216,6 +216,9 @@ void for_each_key(AnySettings& settings, Visit&& visit) {
   key("voxel", map.voxel, "m", 0.01, 1, "edge of the map's voxels: larger is faster and coarser");
   key("reach", map.reach, "m", 2, 100,
       "the map reaches this far around the robot; what lies beyond is forgotten");
+  key("search_reach", map.search_reach, "m", 2, 15,
+      "obstacles are searched for in the map this far around the robot; farther off it only "
+      "gathers what will be needed");
   key("keep_seconds", map.keep_seconds, "s", 1, 86400,
       "what was not seen for so long is forgotten: longer keeps more behind corners, and more of "
       "the "

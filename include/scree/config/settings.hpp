@@ -144,7 +144,8 @@ struct MapSettings {
   bool registration = true;
   double registration_reach = 15;
   double voxel = 0.05;
-  double reach = 12;
+  double reach = 18;
+  double search_reach = 12;
   double keep_seconds = 60;
   int max_points = 1 << 16;
   int max_voxels = 1 << 19;

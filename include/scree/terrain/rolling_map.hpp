@@ -30,7 +30,8 @@ public:
   /// Everything is unseen again.
   void clear();
 
-  /// The confirmed points around the robot, in the map's frame shifted by -origin().
+  /// The confirmed points within map.search_reach of the robot, in the map's frame shifted by
+  /// -origin().
   const PointCloud& cloud() const { return cloud_; }
   /// Of each of these points: the beams that came to its voxel.
   std::span<const BeamCount> beams() const { return beams_; }
@@ -76,7 +77,7 @@ private:
   void see_through(const DeskewedSweep& sweep, const Eigen::Matrix3f& rotation,
                    const Eigen::Vector3f& translation);
   bool is_confirmed(const Voxel& voxel) const;
-  void gather_cloud();
+  void gather_cloud(const Eigen::Vector3f& here);
 
   MapSettings settings_;
   float inverse_;

@@ -112,6 +112,25 @@ TEST_F(RollingMapTest, APointThatNoOtherSweepConfirmsStaysOutAndGoes) {
   EXPECT_TRUE(has_near(beside));
 }
 
+TEST_F(RollingMapTest, WhatIsFarIsGatheredAndHandedOutOnceItIsNear) {
+  settings_.reach = 18;
+  settings_.search_reach = 12;
+  map_ = RollingMap(settings_);
+  const Eigen::Vector3d far(15, 0, 0.5), too_far(19, 0, 0.5);
+  for (int i = 0; i < 3; ++i) {
+    see(far);
+    see(too_far);
+    end_sweep();
+  }
+  EXPECT_EQ(map_.voxels(), 1U);
+  EXPECT_EQ(map_.cloud().size(), 0U);
+  pose_.translation.x() = 4;
+  end_sweep();
+  ASSERT_EQ(map_.cloud().size(), 1U);
+  EXPECT_TRUE(has_near(far));
+  EXPECT_EQ(map_.beams()[0].ended, 3) << "of the beams from afar";
+}
+
 TEST_F(RollingMapTest, PointsOfOneSweepDoNotConfirmOneAnother) {
   for (int i = 0; i < 10; ++i) see({3 + kVoxel * i, 0, 1.5});
   end_sweep();
