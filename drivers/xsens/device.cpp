@@ -12,7 +12,8 @@ namespace {
 constexpr std::int64_t kReopenAfter = kSecond / 2;
 /// ... and to start an MTi that did not answer or refused.
 constexpr std::int64_t kRestartAfter = 2 * kSecond;
-/// A device that says nothing for so long is started anew: it may have lost its power meanwhile.
+/// A device without data for so long is started anew: it may have lost its power meanwhile, or be
+/// another one.
 constexpr std::int64_t kSilence = 2 * kSecond;
 
 }  // namespace
@@ -37,7 +38,7 @@ std::int64_t Device::due_ns() const {
     case DeviceState::measuring:
       break;
   }
-  return settings_.configure ? last_bytes_ns_ + kSilence : std::numeric_limits<std::int64_t>::max();
+  return settings_.configure ? last_data_ns_ + kSilence : std::numeric_limits<std::int64_t>::max();
 }
 
 std::optional<ReceivedBytes> Device::advance(std::int64_t now_ns) {
@@ -49,25 +50,25 @@ std::optional<ReceivedBytes> Device::advance(std::int64_t now_ns) {
   if (state_ != DeviceState::measuring) return std::nullopt;
 
   ReceivedBytes received;
-  switch (port_->receive(buffer_, received)) {
-    case SerialPort::Reading::bytes:
-      last_bytes_ns_ = now_ns;
-      counts_.bytes += received.bytes.size();
-      return received;
-    case SerialPort::Reading::nothing:
-      if (settings_.configure && now_ns - last_bytes_ns_ >= kSilence) {
-        ++counts_.silences;
-        problem_ = "the IMU on " + settings_.device + " has stopped sending";
-        start(now_ns);
-      }
-      break;
-    case SerialPort::Reading::lost:
-      ++counts_.losses;
-      lose("the serial port " + settings_.device + " has gone: was the IMU unplugged?",
-           now_ns + kReopenAfter);
-      break;
+  const SerialPort::Reading reading = port_->receive(buffer_, received);
+  if (reading == SerialPort::Reading::lost) {
+    lose_port(now_ns);
+    return std::nullopt;
   }
-  return std::nullopt;
+  const bool has_bytes = reading == SerialPort::Reading::bytes;
+  if (has_bytes) {
+    counts_.bytes += received.bytes.size();
+    framer_.take(received.bytes, [&](const Message& message) {
+      if (message.id == MessageId::mt_data2) last_data_ns_ = now_ns;
+    });
+  }
+  if (settings_.configure && now_ns - last_data_ns_ >= kSilence) {
+    ++counts_.silences;
+    problem_ = "the IMU on " + settings_.device +
+               (has_bytes ? " sends nothing that can be understood" : " has stopped sending");
+    start(now_ns);
+  }
+  return has_bytes ? std::optional(received) : std::nullopt;
 }
 
 void Device::reopen(std::int64_t now_ns) {
@@ -89,11 +90,7 @@ void Device::start(std::int64_t now_ns) {
 void Device::go_on_starting(std::int64_t now_ns) {
   ReceivedBytes received;
   const SerialPort::Reading reading = port_->receive(buffer_, received);
-  if (reading == SerialPort::Reading::lost) {
-    ++counts_.losses;
-    return lose("the serial port " + settings_.device + " has gone: was the IMU unplugged?",
-                now_ns + kReopenAfter);
-  }
+  if (reading == SerialPort::Reading::lost) return lose_port(now_ns);
   if (reading == SerialPort::Reading::bytes) start_up_.take(received.bytes, now_ns);
   start_up_.advance(now_ns);
   serve_start_up(now_ns);
@@ -114,9 +111,16 @@ void Device::serve_start_up(std::int64_t now_ns) {
     lose(start_up_.problem() + " (on " + settings_.device + ")", now_ns + kRestartAfter);
   } else if (start_up_.state() == StartUp::State::measuring) {
     state_ = DeviceState::measuring;
-    last_bytes_ns_ = now_ns;
+    last_data_ns_ = now_ns;
+    framer_ = Framer();
     ++counts_.starts;
   }
+}
+
+void Device::lose_port(std::int64_t now_ns) {
+  ++counts_.losses;
+  lose("the serial port " + settings_.device + " has gone: was the IMU unplugged?",
+       now_ns + kReopenAfter);
 }
 
 void Device::lose(std::string problem, std::int64_t retry_ns) {

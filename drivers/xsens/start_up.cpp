@@ -142,12 +142,16 @@ Bytes StartUp::take_output() {
   return Bytes(output_).first(std::exchange(output_size_, 0));
 }
 
+/// What finds no room is as good as lost on the line: no answer comes, and it is asked for again.
 void StartUp::send(MessageId id, Bytes data) {
-  output_size_ += write_message(id, data, std::span(output_).subspan(output_size_));
+  const auto room = std::span(output_).subspan(output_size_);
+  if (kShortHeader + data.size() + 1 > room.size()) return;
+  output_size_ += write_message(id, data, room);
 }
 
 void StartUp::enter(Step step, std::int64_t now_ns) {
   step_ = step;
+  refusal_.clear();
   tries_ = 0;
   try_step(now_ns);
 }
@@ -183,6 +187,7 @@ void StartUp::give_up(std::int64_t now_ns) {
     baud_ = settings_.baud;
     return enter(Step::find_again, now_ns);
   }
+  if (!refusal_.empty()) return fail(refusal_);
   if (step_ != Step::find) {
     return fail(std::string("the MTi does not answer ") + request_of(step_).name);
   }
@@ -207,11 +212,16 @@ void StartUp::take_message(const Message& message, std::int64_t now_ns) {
   if (message.id == MessageId::wake_up && is_searching) {
     return send(MessageId::wake_up_ack, {});
   }
-  if (message.id == MessageId::error && !is_searching) {
+  if (message.id == MessageId::error) {
     const int code = message.data.empty() ? -1 : message.data[0];
-    return fail(std::string("the MTi refuses ") + request.name + ": " + meaning_of(code) +
-                " (error " + std::to_string(code) + ")");
+    refusal_ = std::string("the MTi refuses ") + request.name + ": " + meaning_of(code) +
+               " (error " + std::to_string(code) + ")";
+    // While it measures it may say so of what went before, and the answer follows.
+    if (!is_searching) fail(refusal_);
+    return;
   }
+  // It measures: its acknowledgement was lost.
+  if (message.id == MessageId::mt_data2 && step_ == Step::go) return acknowledged({}, now_ns);
   const auto wanted = static_cast<std::uint8_t>(request.id) + 1;
   if (static_cast<std::uint8_t>(message.id) == wanted) acknowledged(message.data, now_ns);
 }

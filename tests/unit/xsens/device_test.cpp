@@ -208,6 +208,23 @@ TEST_F(DeviceTest, ADeviceThatFallsSilentIsStartedAnew) {
   EXPECT_THAT(device.problem(), HasSubstr("has stopped sending"));
 }
 
+TEST_F(DeviceTest, AnotherDeviceAtAnotherBitRateIsFoundBehindTheSameAdapter) {
+  Device device = open();
+  ASSERT_TRUE(run_until_samples(device, 5)) << device.problem();
+  mti_.baud = 115200;
+  for (int i = 0; i < 40 && device.state() == DeviceState::measuring; ++i) {
+    terminal_.write({0x80, 0x00, 0xFF});  // what the wrong bit rate makes of its data
+    ASSERT_TRUE(readable(device.descriptor(), kPatience));
+    now_ns_ += kSecond / 10;
+    while (device.advance(now_ns_)) {
+    }
+  }
+  EXPECT_THAT(device.problem(), HasSubstr("sends nothing that can be understood"));
+  EXPECT_EQ(device.counts().silences, 1U);
+  ASSERT_TRUE(run_until_samples(device, 5)) << device.problem();
+  EXPECT_EQ(mti_.baud, 921600);
+}
+
 TEST_F(DeviceTest, ComesBackAfterUnplugging) {
   for (const bool configure : {true, false}) {
     settings_.configure = configure;

@@ -18,6 +18,7 @@ public:
   bool is_silent = false;
   std::map<int, int> refuses;    ///< message id, error code
   std::map<int, int> ignores;    ///< message id, how many of them
+  std::map<int, int> loses;      ///< message id, how many of its acknowledgements
   int highest_rate = 400;        ///< Hz
   std::vector<int> heard;        ///< message ids, in order
   ByteVector outputs;            ///< as set
@@ -31,6 +32,7 @@ public:
     ByteVector answers;
     while (const auto request = next()) {
       const ByteVector one = respond(request->first, request->second);
+      if (loses[request->first]-- > 0) continue;
       answers.insert(answers.end(), one.begin(), one.end());
     }
     return answers;

@@ -23,11 +23,11 @@ struct DeviceCounts {
   std::uint64_t bytes = 0;     ///< handed out
   std::uint64_t starts = 0;    ///< times that it began to measure
   std::uint64_t losses = 0;    ///< times that the port went away
-  std::uint64_t silences = 0;  ///< times that it stopped sending and was started anew
+  std::uint64_t silences = 0;  ///< times that no data came and it was started anew
 };
 
 /// An MTi on a serial port, kept measuring: opened, started, and after an unplugging, a refusal or
-/// two seconds of silence started anew, for ever.
+/// two seconds without data started anew, for ever.
 ///
 /// Never blocks. Wait until the descriptor is readable or the time is due, then call advance()
 /// until it gives nothing.
@@ -62,6 +62,7 @@ private:
   void start(std::int64_t now_ns);
   void go_on_starting(std::int64_t now_ns);
   void serve_start_up(std::int64_t now_ns);
+  void lose_port(std::int64_t now_ns);
   void lose(std::string problem, std::int64_t retry_ns);
 
   ImuSettings settings_;
@@ -69,8 +70,9 @@ private:
   StartUp start_up_;
   DeviceState state_ = DeviceState::lost;
   int line_baud_ = 0;
-  std::int64_t retry_ns_ = 0;       ///< when to open the port again
-  std::int64_t last_bytes_ns_ = 0;  ///< while measuring
+  std::int64_t retry_ns_ = 0;      ///< when to open the port again
+  Framer framer_;                  ///< of what is handed out
+  std::int64_t last_data_ns_ = 0;  ///< an MTData2 message, while measuring
   std::string problem_;
   DeviceCounts counts_;
   std::array<std::uint8_t, 4096> buffer_{};

@@ -28,7 +28,7 @@ std::optional<std::string> line_too_slow(const ImuSettings& settings);
 /// | go         | GoToMeasurement              | measuring                                       |
 ///
 /// What is not acknowledged in time is sent again, a few times; then, or when the device answers
-/// with an error, the start has failed.
+/// with an error, the start has failed. Data are an acknowledgement of GoToMeasurement, too.
 class StartUp {
 public:
   enum class State : std::uint8_t { working, measuring, failed };
@@ -87,6 +87,7 @@ private:
   std::array<std::uint8_t, 128> output_{};
   std::size_t output_size_ = 0;
   std::uint64_t device_id_ = 0;
+  std::string refusal_;  ///< of this step; empty: none
   std::string problem_, note_;
 };
 
