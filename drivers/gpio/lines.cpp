@@ -57,18 +57,24 @@ Result<PulseInput> PulseInput::open(const std::string& name, bool is_active_low)
   auto line = open_line(name, is_active_low, false, false);
   if (!line) return tl::make_unexpected(line.error());
   PulseInput input;
+  input.name_ = name;
+  input.is_active_low_ = is_active_low;
   input.line_ = std::move(*line);
   return input;
 }
 
-std::optional<std::int64_t> PulseInput::read() {
-  const auto stamp_ns = read_edge(*line_);
-  if (!stamp_ns) return std::nullopt;
-  return edge_host_ns(*stamp_ns, read_clock(CLOCK_MONOTONIC), read_clock(CLOCK_REALTIME));
+int PulseInput::descriptor() {
+  if (!line_) {
+    auto line = open_line(name_, is_active_low_, false, false);
+    if (line) line_ = std::move(*line);
+  }
+  return line_ ? descriptor_of(*line_) : -1;
 }
 
-int PulseInput::descriptor() const {
-  return descriptor_of(*line_);
+std::optional<std::int64_t> PulseInput::read() {
+  const auto stamp_ns = line_ ? read_edge(*line_) : std::nullopt;
+  if (!stamp_ns) return std::nullopt;
+  return edge_host_ns(*stamp_ns, read_clock(CLOCK_MONOTONIC), read_clock(CLOCK_REALTIME));
 }
 
 Result<std::string> holder_of(const std::string& name) {

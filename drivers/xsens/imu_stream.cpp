@@ -176,6 +176,7 @@ void ImuStream::hand_out(const Measurement& measurement, std::int64_t t_ns,
   if (!sample.has_orientation && !sample.has_rate && !sample.has_acceleration) return;
   sample.t_ns = t_ns;
   ++counters_.samples;
+  counters_.oriented += sample.has_orientation ? 1 : 0;
   if (on_sample_) on_sample_(sample);
 }
 

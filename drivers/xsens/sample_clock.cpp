@@ -3,6 +3,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 
 #include "scree/core/nanoseconds.hpp"
 
@@ -77,10 +78,13 @@ void SampleClock::take_up(Source source) {
 }
 
 void SampleClock::count(std::int64_t step, std::int64_t arrival_ns) {
-  if (samples_ == 0 || arrival_ns < counted_since_ns_) {
+  // After a silence it may be another device, or set up otherwise.
+  if (samples_ == 0 || std::abs(arrival_ns - counted_ns_) > kMissing) {
     samples_ = 0;
+    period_ns_ = 0;
     counted_since_ns_ = arrival_ns;
   }
+  counted_ns_ = arrival_ns;
   samples_ += step;
   const std::int64_t elapsed = arrival_ns - counted_since_ns_;
   if (period_ns_ != 0 || elapsed < kMeasureFor) return;

@@ -127,7 +127,10 @@ private:
       go_round();
       sensors_->gather();
       if (sensors_->covers(sweep.sweep.end_ns)) return;
-      if (steady_ns() - sweep.arrival_ns >= wait_ns_) return;
+      if (steady_ns() - sweep.arrival_ns >= wait_ns_) {
+        not_covered_.fetch_add(1, std::memory_order_relaxed);
+        return;
+      }
       std::this_thread::sleep_for(kPause);
     }
   }
@@ -187,7 +190,8 @@ private:
   void look(std::int64_t now) {
     outputs_.set_zone(zone_.get());
     const LidarStatus& lidar = reader_.status();
-    const DetectorStatus detector{last_round_ns_.load(std::memory_order_relaxed), last_list_ns_};
+    const DetectorStatus detector{last_round_ns_.load(std::memory_order_relaxed), last_list_ns_,
+                                  not_covered_.load(std::memory_order_relaxed)};
     bool has_changed =
         watch_.update(now, lidar, imu_ ? imu_->status() : ImuStatus(),
                       encoder_ ? encoder_->status() : EncoderStatus(), detector, health_);
@@ -233,6 +237,7 @@ private:
     health_.sweeps = count(lidar.lidar.sweeps);
     health_.sweeps_dropped = count(lidar.sweeps_dropped);
     health_.sweeps_empty = count(lidar.sweeps_empty);
+    health_.sweeps_not_covered = count(not_covered_.load(std::memory_order_relaxed));
     health_.points_dropped = count(lidar.lidar.dropped + work_.dropped().points);
     health_.lists_dropped = lists_dropped_.load(std::memory_order_relaxed);
     health_.queues = {queue_message("sweeps", sweeps_.fill()),
@@ -260,6 +265,7 @@ private:
   SweepRing sweeps_;
   HandOver<FoundList> lists_;
   std::atomic<std::int64_t> lists_dropped_{0}, last_round_ns_{steady_ns()};
+  std::atomic<std::uint64_t> not_covered_{0};
   LidarReader reader_;
   std::optional<ImuReader> imu_;
   std::optional<EncoderReader> encoder_;

@@ -29,6 +29,11 @@ void add_refused(const Names& names, const Reasons& reasons, const Counts& count
   }
 }
 
+/// Whether Scree has asked the IMU for messages without an orientation.
+bool gives_high_rates(const ImuSettings& imu) {
+  return imu.configure && (imu.acceleration_hr_rate > 0 || imu.gyro_hr_rate > 0);
+}
+
 }  // namespace
 
 HealthWatch::HealthWatch(const Settings& settings, std::int64_t now_ns)
@@ -64,6 +69,10 @@ bool HealthWatch::update(std::int64_t now_ns, const LidarStatus& lidar, const Im
   if (health.state != before) say_sight(now_ns, health.reason);
   sweeps_dropped_.say(now_ns, lidar.sweeps_dropped, "sweeps dropped: the detector was too slow",
                       log_);
+  sweeps_not_covered_.say(now_ns, detector.not_covered,
+                          "sweeps went on without the samples of IMU or encoder that cover them: "
+                          "those came later than map.wait",
+                          log_);
   return has_changed || health.reason != reason_before;
 }
 
@@ -100,9 +109,13 @@ SensorStatus HealthWatch::status_of(const ImuStatus& imu) const {
   status.source = settings_.imu.device;
   status.last_heard_ns = imu.last_bytes_ns;
   status.last_message_ns = imu.last_message_ns;
-  status.messages = imu.imu.accepted;
+  status.messages = imu.imu.oriented;
   status.lost = imu.imu.lost;
   add_refused(xsens::kRefusalNames, xsens::kRefusalReasons, imu.imu.refused, status);
+  if (!gives_high_rates(settings_.imu)) {
+    status.refused.push_back(
+        {"no_orientation", "no orientation in them", imu.imu.samples - imu.imu.oriented});
+  }
   status.refused.push_back(
       {"stray_bytes", "bytes that belong to no message", imu.imu.bytes_skipped});
   status.clock = imu.clock;
@@ -180,9 +193,17 @@ void HealthWatch::say_pulses(const LidarStatus& lidar) {
     say(false, "the pulse per second of gpio.pps comes");
     said_pulse_ = true;
   }
-  if (!said_pps_lost_ && lidar.is_pps_lost) {
-    say(true, "the GPIO chip of gpio.pps is gone: plug it in again and restart screed");
-    said_pps_lost_ = true;
+  if (lidar.is_pps_lost != said_pps_lost_) {
+    say(lidar.is_pps_lost, lidar.is_pps_lost ? "the GPIO chip of gpio.pps is gone"
+                                             : "the line of gpio.pps is there again");
+    said_pps_lost_ = lidar.is_pps_lost;
+  }
+  if (lidar.pulses > 0 && lidar.has_no_pulse != said_no_pulse_) {
+    say(lidar.has_no_pulse, lidar.has_no_pulse
+                                ? "the lidar says that it hears no pulse per second: those of "
+                                  "gpio.pps are not used; are both wired to one source?"
+                                : "the lidar hears the pulse per second");
+    said_no_pulse_ = lidar.has_no_pulse;
   }
 }
 

@@ -16,6 +16,7 @@ namespace scree {
 struct DetectorStatus {
   std::int64_t last_round_ns = 0;  ///< its thread waited, or began or ended with a sweep
   std::int64_t last_list_ns = 0;   ///< LCM took a list, of a sweep not older than kOldSweep
+  std::uint64_t not_covered = 0;   ///< sweeps that waited in vain for samples of IMU or encoder
 };
 
 /// Judges from what the threads report whether the robot sees, and what a person should read in the
@@ -67,8 +68,8 @@ private:
   std::string said_reason_;
   std::int64_t said_at_ns_ = 0;
   bool said_datagram_ = false, said_packet_ = false;
-  bool said_pulse_ = false, said_pps_lost_ = false;
-  Growth sweeps_dropped_;
+  bool said_pulse_ = false, said_pps_lost_ = false, said_no_pulse_ = false;
+  Growth sweeps_dropped_, sweeps_not_covered_;
 };
 
 }  // namespace scree

@@ -49,7 +49,7 @@ void ImuReader::read() {
   while (const auto received = device_->advance(steady_ns())) {
     stream_.take(received->bytes, clock_.to_monotonic(received->arrival_ns, read_clocks()));
     status_.last_bytes_ns = steady_ns();
-    if (stream_.counters().accepted != status_.imu.accepted) {
+    if (stream_.counters().oriented != status_.imu.oriented) {
       status_.last_message_ns = status_.last_bytes_ns;
     }
     status_.imu = stream_.counters();
@@ -59,6 +59,7 @@ void ImuReader::read() {
   const bool measures = device_->state() == xsens::DeviceState::measuring;
   if (measures && !measures_) {
     spdlog::info("IMU: measuring on {}", settings_.device);
+    if (!device_->note().empty()) spdlog::warn("IMU: {}", device_->note());
     said_.clear();
   } else if (!measures) {
     say(device_->problem());

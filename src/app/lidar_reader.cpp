@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "clocks.hpp"
+#include "scree/core/nanoseconds.hpp"
 #include "scree/drivers/velodyne/position_packet.hpp"
 
 namespace scree {
@@ -34,16 +35,18 @@ LidarReader::LidarReader(const LidarSettings& settings, LidarPorts ports, RobotL
 void LidarReader::run() {
   pollfd wait_for[] = {{ports_.data.descriptor(), POLLIN, 0},
                        {ports_.position.descriptor(), POLLIN, 0},
-                       {pps_.descriptor, POLLIN, 0},
+                       {-1, POLLIN, 0},
                        {stop_.descriptor(), POLLIN, 0}};
   while (true) {
     turns_.note();
+    if (wait_for[2].fd < 0) wait_for[2].fd = find_pulses();
     if (poll(wait_for, std::size(wait_for), kLongestTurnMs) < 0) continue;  // a signal came between
     if (wait_for[3].revents != 0) return;
     if ((wait_for[2].revents & POLLIN) != 0) {
       read_pulses();
     } else if (wait_for[2].revents != 0) {
-      wait_for[2].fd = -1;  // its chip is gone
+      pps_.close();  // its chip is gone
+      wait_for[2].fd = -1;
       status_.is_pps_lost = true;
     }
     if (wait_for[0].revents != 0) read_data();
@@ -75,13 +78,26 @@ void LidarReader::read_position() {
   for (int i = 0; i < kBatch; ++i) {
     const auto datagram = ports_.position.receive(buffer_);
     if (!datagram) return;
-    if (velodyne::parse_position_packet(datagram->bytes)) ++status_.position_packets;
+    const auto packet = velodyne::parse_position_packet(datagram->bytes);
+    if (!packet) continue;
+    ++status_.position_packets;
+    status_.has_no_pulse = packet->pps == velodyne::PpsStatus::absent;
   }
 }
 
+/// The descriptor of their line, looked for once a second; -1: none.
+int LidarReader::find_pulses() {
+  if (!pps_.descriptor || steady_ns() - pps_tried_ns_ < kSecond) return -1;
+  pps_tried_ns_ = steady_ns();
+  const int descriptor = pps_.descriptor();
+  status_.is_pps_lost = descriptor < 0;
+  return descriptor;
+}
+
+/// To a lidar that says that it hears no pulse they mean nothing.
 void LidarReader::read_pulses() {
   while (const auto pulse_ns = pps_.read()) {
-    stream_.pps(clock_.to_monotonic(*pulse_ns, read_clocks()));
+    if (!status_.has_no_pulse) stream_.pps(clock_.to_monotonic(*pulse_ns, read_clocks()));
     ++status_.pulses;
   }
 }

@@ -50,11 +50,13 @@ public:
 private:
   void read_data();
   void read_position();
+  int find_pulses();
   void read_pulses();
   void hand_over(Sweep& sweep);
 
   LidarPorts ports_;
   RobotLines::Pulses pps_;
+  std::int64_t pps_tried_ns_ = 0;
   SweepRing& sweeps_;
   HostClock clock_;
   velodyne::LidarStream stream_;

@@ -52,7 +52,9 @@ scree::RobotLines robot_lines(scree::gpio::Lines& held) {
   };
   scree::RobotLines lines{setter(held.stop), setter(held.heartbeat), {}};
   if (held.pps) {
-    lines.pps = {held.pps->descriptor(), [&pps = *held.pps] { return pps.read(); }};
+    scree::gpio::PulseInput& pps = *held.pps;
+    lines.pps = {[&pps] { return pps.descriptor(); }, [&pps] { return pps.read(); },
+                 [&pps] { pps.close(); }};
   }
   return lines;
 }
@@ -61,14 +63,8 @@ scree::RobotLines robot_lines(scree::gpio::Lines& held) {
 int check(const std::filesystem::path& file) {
   const auto config = scree::RunningConfig::read(file);
   if (!config) return failed(config.error().message);
-  const scree::Settings& settings = config->settings();
-  for (const std::string& name :
-       {settings.detect_map.network, settings.detect_sweep.network, settings.track.network}) {
-    if (name.empty()) continue;
-    const auto network = scree::load_network(name, file);
-    if (!network) return failed(network.error().message);
-  }
-  return kStopped;
+  const auto networks = scree::load_networks(config->settings(), file);
+  return networks ? kStopped : failed(networks.error().message);
 }
 
 int run(const std::filesystem::path& file) {

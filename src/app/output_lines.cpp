@@ -10,14 +10,12 @@ OutputLine::OutputLine(std::string name, RobotLines::Set set)
     : name_(std::move(name)), set_(std::move(set)) {}
 
 void OutputLine::set(bool is_on) {
-  if (!set_ || level_ == is_on) return;
+  if (!set_) return;
   if (set_(is_on)) {
-    level_ = is_on;
     if (problem_.empty()) return;
     spdlog::info("the {} line can be set again", name_);
     problem_.clear();
   } else if (problem_.empty()) {
-    level_.reset();
     problem_ = "the " + name_ + " line cannot be set: is its chip still there (`gpiodetect`)?";
     spdlog::error(problem_);
   }

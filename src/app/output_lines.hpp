@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "scree/app/robot_lines.hpp"
@@ -10,13 +9,13 @@
 
 namespace scree {
 
-/// One output: set when its level changes, and again and again while that fails. Says both in the
-/// log, once.
+/// One output. Says in the log when it cannot be set and when it can again, once.
 class OutputLine {
 public:
   /// @param name for people; without `set` there is no such line
   OutputLine(std::string name, RobotLines::Set set);
 
+  /// To be called again and again: a chip that was unplugged has forgotten the level.
   void set(bool is_on);
   /// One sentence while it cannot be set, else empty.
   const std::string& problem() const { return problem_; }
@@ -24,7 +23,6 @@ public:
 private:
   std::string name_;
   RobotLines::Set set_;
-  std::optional<bool> level_;  // nothing: unknown
   std::string problem_;
 };
 

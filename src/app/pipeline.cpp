@@ -17,19 +17,23 @@ Result<Detector> make_detector(const DetectSettings& settings,
   return Detector(settings, *std::move(network));
 }
 
+Result<Networks> load_networks(const Settings& settings, const std::filesystem::path& config_file) {
+  auto map = load_network(settings.detect_map.network, config_file);
+  if (!map) return tl::make_unexpected(map.error());
+  auto sweep = load_network(settings.detect_sweep.network, config_file);
+  if (!sweep) return tl::make_unexpected(sweep.error());
+  if (settings.track.network.empty()) return Networks{*map, *sweep, std::nullopt};
+  auto judge = load_network(settings.track.network, config_file);
+  if (!judge) return tl::make_unexpected(judge.error());
+  return Networks{*map, *sweep, *judge};
+}
+
 Result<Pipeline> Pipeline::make(const Settings& settings,
                                 const std::filesystem::path& config_file) {
-  auto map_detector = make_detector(settings.detect_map, config_file);
-  if (!map_detector) return tl::make_unexpected(map_detector.error());
-  auto sweep_detector = make_detector(settings.detect_sweep, config_file);
-  if (!sweep_detector) return tl::make_unexpected(sweep_detector.error());
-  std::optional<Network> judge;
-  if (!settings.track.network.empty()) {
-    auto network = load_network(settings.track.network, config_file);
-    if (!network) return tl::make_unexpected(network.error());
-    judge = *std::move(network);
-  }
-  return Pipeline(settings, *std::move(map_detector), *std::move(sweep_detector), std::move(judge));
+  auto networks = load_networks(settings, config_file);
+  if (!networks) return tl::make_unexpected(networks.error());
+  return Pipeline(settings, Detector(settings.detect_map, networks->map),
+                  Detector(settings.detect_sweep, networks->sweep), networks->judge);
 }
 
 Pipeline::Pipeline(const Settings& settings, Detector map_detector, Detector sweep_detector,

@@ -24,8 +24,9 @@ struct LidarStatus {
   std::int64_t last_packet_ns = 0;  ///< of a data packet that was accepted
   std::uint64_t position_packets = 0;
 
-  std::uint64_t pulses = 0;  ///< of the pulse per second
-  bool is_pps_lost = false;  ///< its GPIO chip is gone
+  std::uint64_t pulses = 0;   ///< of the pulse per second
+  bool is_pps_lost = false;   ///< its GPIO chip is gone
+  bool has_no_pulse = false;  ///< the lidar's own word
   ClockStatus clock;
 
   std::int64_t without_return_ns = 0;
@@ -37,7 +38,7 @@ struct LidarStatus {
 struct ImuStatus {
   xsens::ImuCounters imu;
   std::int64_t last_bytes_ns = 0;
-  std::int64_t last_message_ns = 0;  ///< of a message that was accepted
+  std::int64_t last_message_ns = 0;  ///< of a sample with an orientation
   ClockStatus clock;
 };
 

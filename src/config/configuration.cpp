@@ -165,6 +165,10 @@ std::optional<Contradiction> contradiction(const Settings& settings) {
     return Contradiction{{"lidar.min_range", "lidar.max_range"},
                          "lidar.min_range must be below lidar.max_range"};
   }
+  if (settings.lidar.port == settings.lidar.position_port) {
+    return Contradiction{{"lidar.port", "lidar.position_port"},
+                         "lidar.port and lidar.position_port must differ"};
+  }
   const EncoderSettings& encoder = settings.encoder;
   constexpr int kLargestFrame = 64;
   if (encoder.frame_bytes() > kLargestFrame) {
@@ -247,17 +251,10 @@ std::vector<std::filesystem::path> drop_ins(std::filesystem::path file) {
 /// Of the files that keys name; those of the defaults come with Scree.
 std::optional<Error> missing_file(const Configuration& configuration,
                                   const std::filesystem::path& config_file) {
-  const Settings& settings = configuration.settings;
-  const std::pair<const char*, const std::string*> files[] = {
-      {"encoder.dbc", &settings.encoder.dbc},
-      {"detect.cloud.network", &settings.detect_cloud.network},
-      {"detect.map.network", &settings.detect_map.network},
-      {"detect.sweep.network", &settings.detect_sweep.network},
-      {"track.network", &settings.track.network}};
-  for (const auto& [key, name] : files) {
+  for (const auto& [key, name] : named_files(configuration.settings)) {
     const Source source = configuration.source_of(key);
-    if (source.is_default() || name->empty()) continue;
-    if (const auto found = find_file(*name, config_file); !found) {
+    if (source.is_default() || name.empty()) continue;
+    if (const auto found = find_file(name, config_file); !found) {
       return Error{fmt::format("{}: {}: {}", source.text(), key, found.error().message)};
     }
   }
@@ -273,6 +270,14 @@ std::string Source::text() const {
 Source Configuration::source_of(std::string_view name) const {
   const auto found = sources.find(name);
   return found == sources.end() ? Source() : found->second;
+}
+
+std::vector<NamedFile> named_files(const Settings& settings) {
+  return {{"encoder.dbc", settings.encoder.dbc},
+          {"detect.cloud.network", settings.detect_cloud.network},
+          {"detect.map.network", settings.detect_map.network},
+          {"detect.sweep.network", settings.detect_sweep.network},
+          {"track.network", settings.track.network}};
 }
 
 Result<Configuration> read_configuration(const std::filesystem::path& file) {

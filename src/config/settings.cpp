@@ -58,9 +58,9 @@ Result<std::filesystem::path> find_file(const std::string& name,
   std::error_code ignored;
   const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
   const fs::path shipped = program.parent_path().parent_path() / "share" / "scree";
-  for (const fs::path& candidate : {config_file.parent_path() / name, shipped / name}) {
-    const bool has_folder = !config_file.empty() || candidate.is_absolute();
-    if (has_folder && fs::is_regular_file(candidate, ignored)) return candidate;
+  const fs::path beside = config_file.empty() ? shipped : config_file.parent_path();
+  for (const fs::path& candidate : {beside / name, shipped / name}) {
+    if (fs::is_regular_file(candidate, ignored)) return candidate;
   }
   return fail(
       fmt::format("cannot find {} beside the configuration file or in {}", name, shipped.string()));

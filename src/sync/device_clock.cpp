@@ -41,8 +41,9 @@ constexpr std::int64_t kEnoughPackets = 20, kLongEnough = kSecond;
 /// Host times given out are brought to the best known by one part of this of the time that goes by.
 constexpr std::int64_t kSlewAtFirst = 2, kSlew = 4;
 
-/// The packets' least delay is below this; an edge farther off is not of the device's clock.
-constexpr std::int64_t kEdgeWithin = 50 * kMillisecond;
+/// The packets' least delay is below this, and none comes before it was sent; an edge that says
+/// otherwise is not of the device's clock.
+constexpr std::int64_t kLongestDelay = 20 * kMillisecond, kEdgeLate = 2 * kMillisecond;
 constexpr std::int64_t kEdgeHolds = 5 * kSecond;
 
 }  // namespace
@@ -197,7 +198,8 @@ void DeviceClock::pps(std::int64_t host_edge_ns) {
   const std::int64_t about_ns = host_edge_ns - line.offset_at(last_.device_ns);
   const std::int64_t second_ns = (about_ns + kSecond / 2) / kSecond * kSecond;
   const ClockSample edge{second_ns, host_edge_ns - second_ns};
-  if (std::abs(envelope_.excess_ns(edge)) > kEdgeWithin || !edges_.add(edge, line.skew_ppb)) {
+  const std::int64_t excess = envelope_.excess_ns(edge);
+  if (excess < -kLongestDelay || excess > kEdgeLate || !edges_.add(edge, line.skew_ppb)) {
     ++edges_refused_;
     return;
   }

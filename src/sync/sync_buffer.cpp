@@ -13,7 +13,7 @@ double seconds(std::int64_t ns) {
 
 bool is_sound(const ImuSample& sample) {
   constexpr double kUnit = 0.1;  // how far a quaternion's length may be from 1
-  return sample.has_orientation && std::abs(sample.orientation.norm() - 1) < kUnit &&
+  return std::abs(sample.orientation.norm() - 1) < kUnit &&
          (!sample.has_rate || sample.rate.allFinite());
 }
 
@@ -57,7 +57,7 @@ bool SyncBuffer::put(const Sample& sample, Ring<Sample>& ring) {
 }
 
 bool SyncBuffer::put(const ImuSample& sample) {
-  return put(sample, imu_ring_);
+  return !sample.has_orientation || put(sample, imu_ring_);
 }
 
 bool SyncBuffer::put(const EncoderSample& sample) {

@@ -160,10 +160,10 @@ void RollingMap::add(const DeskewedSweep& sweep, const Pose& pose, std::int64_t 
   gather_cloud(translation);
 }
 
-/// Follows some of the beams, others each sweep, to shortly before what they hit, farther off
-/// through the last metres of where obstacles are searched for, too. What has moved
-/// away must stand clear of the hit, for poses err; grass is counted nearer to it. Through grass as
-/// many beams pass below a blade as above it, over a rock only above: those below count for both.
+/// Follows some of the beams, others each sweep, to shortly before what they hit; farther off,
+/// through the last metres of where obstacles are searched for, too. What has moved away must stand
+/// clear of the hit, for poses err; grass is counted nearer to it. Through grass as many beams pass
+/// below a blade as above it, over a rock only above: those below count for both.
 void RollingMap::see_through(const DeskewedSweep& sweep, const Eigen::Matrix3f& rotation,
                              const Eigen::Vector3f& translation) {
   constexpr std::uint16_t kEvery = 4;

@@ -51,6 +51,7 @@ Counts losses_of(const sensor_health_t& sensor) {
 Counts drops_of(const health_t& health) {
   Counts counts = {{"sweeps dropped", health.sweeps_dropped},
                    {"sweeps without a return", health.sweeps_empty},
+                   {"sweeps without all motion", health.sweeps_not_covered},
                    {"lists failed", health.lists_failed},
                    {"lists dropped", health.lists_dropped},
                    {"points dropped", health.points_dropped},

@@ -56,11 +56,9 @@ void make_capture_folder(const fs::path& folder) {
 
 void keep_config(const fs::path& config, const fs::path& folder) {
   const Configuration configuration = value_or_fail(read_configuration(config));
-  const Settings& settings = configuration.settings;
   std::string toml = text_of(config, configuration);
-  const std::set<std::string> names = {settings.encoder.dbc, settings.detect_cloud.network,
-                                       settings.detect_map.network, settings.detect_sweep.network,
-                                       settings.track.network};
+  std::set<std::string> names;
+  for (const NamedFile& file : named_files(configuration.settings)) names.insert(file.name);
   for (const std::string& name : names) {
     const fs::path source = config.parent_path() / name;
     std::error_code error;

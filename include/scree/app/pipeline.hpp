@@ -76,6 +76,12 @@ private:
 
 /// The weights in a file that a setting names.
 Result<Network> load_network(const std::string& name, const std::filesystem::path& config_file);
+/// All that a pipeline needs.
+struct Networks {
+  Network map, sweep;            ///< of detect.map and detect.sweep
+  std::optional<Network> judge;  ///< of tracks
+};
+Result<Networks> load_networks(const Settings& settings, const std::filesystem::path& config_file);
 /// A detector with its weights, for clouds (detect.cloud), the map (detect.map) or sweeps
 /// (detect.sweep).
 Result<Detector> make_detector(const DetectSettings& settings,

@@ -13,9 +13,13 @@ struct RobotLines {
 
   /// A pulse per second. Used by one thread.
   struct Pulses {
-    int descriptor = -1;  ///< readable while a pulse waits
+    /// Readable while a pulse waits; -1: the line is not there, and is looked for anew with each
+    /// call. Without the function there is no such line.
+    std::function<int()> descriptor;
     /// Wall-clock time of the next pulse that waits, or nothing. Never blocks.
     std::function<std::optional<std::int64_t>()> read;
+    /// Lets go of a line whose chip is gone.
+    std::function<void()> close;
   };
 
   Set stop;       ///< on: the robot must stop

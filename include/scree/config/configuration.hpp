@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "scree/config/settings.hpp"
 #include "scree/core/result.hpp"
@@ -28,6 +29,13 @@ struct Configuration {
 
   Source source_of(std::string_view name) const;
 };
+
+struct NamedFile {
+  std::string_view key;
+  std::string name;
+};
+/// The files that keys name: weights and a DBC file; a name is empty where there is none.
+std::vector<NamedFile> named_files(const Settings& settings);
 
 /// Reads a TOML file over the defaults, then the drop-ins over it: of scree.toml the files
 /// scree.d/*.toml beside it, in the order of their names. The error names file, line and key, what

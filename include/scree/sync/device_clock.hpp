@@ -65,8 +65,8 @@ public:
 
   /// Takes the host's time of an edge at which the device's clock stood at a whole second. Which
   /// second it was is known from the packets; so edges count only once the state is `estimated`,
-  /// and only within 50 ms of what the packets say. Periods must be of whole seconds, else edges
-  /// count for nothing. The lock is given up 5 s after the last edge.
+  /// and only where the packets then took 0 to 20 ms, at the least, to arrive. Periods must be of
+  /// whole seconds, else edges count for nothing. The lock is given up 5 s after the last edge.
   void pps(std::int64_t host_edge_ns);
 
   /// Host time of a device time that lies less than half a period from the last update.

@@ -31,20 +31,22 @@ struct WheelMotion {
 class SyncBuffer {
 public:
   /// A sensor's two samples around an instant may lie this far apart; and the last one may lie this
-  /// long ago. Beyond it the sensor was silent.
-  static constexpr std::int64_t kSilenceNs = 100'000'000;
+  /// long ago. Beyond it the sensor was silent. An encoder may send as little as 10 frames a
+  /// second, and not on the dot.
+  static constexpr std::int64_t kSilenceNs = 150'000'000;
   /// A sample this much older than the one before says that the clock was set back: what came
   /// before is forgotten.
   static constexpr std::int64_t kSetBackNs = 1'000'000'000;
 
-  // Producers, one thread each. False: no room, dropped and counted.
+  // Producers, one thread each. False: no room, dropped and counted. IMU samples without an
+  // orientation, as those of high rate, are of no use here and are passed over.
   bool put(const ImuSample& sample);
   bool put(const EncoderSample& sample);
 
   // The consumer.
 
   /// Takes over what the producers have put. Refused: samples not newer than those before, and
-  /// those without an orientation or with values that are no numbers.
+  /// those with values that are no numbers.
   void gather();
   /// Whether waiting longer cannot give the motion until t_ns any better: each sensor has a sample
   /// from then or later, or has been silent for kSilenceNs before it.

@@ -91,9 +91,9 @@ protected:
     work.stage_times[static_cast<std::size_t>(Stage::gradient)] = 7'000'000;
     return looks_ ? &found_ : nullptr;
   }
-  std::unique_ptr<Daemon> start() {
+  std::unique_ptr<Daemon> start(SyncBuffer* sensors = nullptr) {
     auto daemon = Daemon::start(
-        settings_, [this](const Sweep& sweep, Work& work) { return process(sweep, work); }, nullptr,
+        settings_, [this](const Sweep& sweep, Work& work) { return process(sweep, work); }, sensors,
         lines_);
     EXPECT_TRUE(daemon) << daemon.error().message;
     return std::move(*daemon);
@@ -164,6 +164,28 @@ TEST_F(DaemonTest, ASlowDetectorLosesTheNewestSweepsAndTheyAreCounted) {
   EXPECT_EQ(listener_->health.queues[0].capacity, 3);
   is_stuck_ = false;
   EXPECT_TRUE(listener_->until([&] { return listener_->health.state == health_t::OK; }));
+}
+
+TEST_F(DaemonTest, ASweepWaitsForMotionOnlySoLongAndSaysThatItWentOnWithoutIt) {
+  settings_.imu.device = "/dev/scree-has-no-imu";
+  settings_.encoder.interface = "no-can";
+  SyncBuffer sensors;
+  const auto daemon = start(&sensors);
+  const SendingLidar lidar(settings_.lidar.port);
+  std::int64_t late_ns = 0;
+  const std::jthread imu([&](const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+      ImuSample sample;
+      sample.has_orientation = true;
+      sample.t_ns = nanoseconds_of<Clock>() - 120'000'000;
+      sensors.put(sample);
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+  });
+  ASSERT_TRUE(listener_->until(
+      [&] { return listener_->health.sweeps_not_covered > 0 && listener_->lists > 2; }));
+  late_ns = sweep_age_ns_;
+  EXPECT_GE(late_ns, static_cast<std::int64_t>(settings_.map.wait * 1e9));
 }
 
 TEST_F(DaemonTest, NothingIsPublishedWhileNothingIsLookedAt) {

@@ -39,7 +39,8 @@ protected:
   }
   void measure(std::int64_t milliseconds) {
     const auto samples = static_cast<std::uint64_t>(milliseconds / 10);
-    imu_.imu.accepted += samples;
+    imu_.imu.samples += samples;
+    imu_.imu.oriented += samples;
     imu_.last_bytes_ns = imu_.last_message_ns = now_;
     encoder_.encoder.accepted += samples;
     encoder_.last_frame_ns = encoder_.last_sample_ns = now_;
@@ -156,6 +157,42 @@ TEST_F(HealthWatchTest, PulsesAndTheirLossAreSaidOnce) {
   status_.is_pps_lost = true;
   EXPECT_THAT(drive(50), HasSubstr("W the GPIO chip of gpio.pps is gone"));
   EXPECT_THAT(drive(50), IsEmpty());
+  status_.is_pps_lost = false;
+  EXPECT_THAT(drive(50), HasSubstr("I the line of gpio.pps is there again"));
+  status_.has_no_pulse = true;
+  EXPECT_THAT(drive(50), HasSubstr("W the lidar says that it hears no pulse per second"));
+  EXPECT_THAT(drive(50), IsEmpty());
+}
+
+TEST_F(HealthWatchTest, AnImuWithoutOrientationIsNoUse) {
+  std::string log;
+  for (int i = 0; i < 10; ++i) {
+    imu_.imu.samples += 5;
+    imu_.last_bytes_ns = now_;
+    log += pass(50);
+  }
+  EXPECT_EQ(health_.imu.state, sensor_health_t::WRONG_DATA);
+  EXPECT_THAT(log, HasSubstr("are not understood (no orientation in them)"));
+}
+
+TEST_F(HealthWatchTest, MessagesOfHighRateAreNotRefused) {
+  Settings high_rate = settings();
+  high_rate.imu.gyro_hr_rate = 1000;
+  watch_ = HealthWatch(high_rate, now_);
+  std::string log;
+  for (int i = 0; i < 41; ++i) {
+    imu_.imu.samples += 50;
+    log += drive(50);
+  }
+  EXPECT_EQ(health_.imu.state, sensor_health_t::OK);
+  EXPECT_NEAR(health_.imu.rate, 100, 1);
+  EXPECT_THAT(log, Not(HasSubstr("orientation")));
+}
+
+TEST_F(HealthWatchTest, SweepsThatWaitedInVainAreSaid) {
+  drive(50);
+  detector_.not_covered = 3;
+  EXPECT_THAT(pass(20), HasSubstr("W sweeps went on without the samples of IMU or encoder"));
 }
 
 TEST_F(HealthWatchTest, WithoutImuAndEncoderItSeesAndSaysThatTheyAreSilent) {
@@ -202,7 +239,7 @@ TEST_F(HealthWatchTest, AnImuBelowItsConfiguredRateIsSlow) {
   EXPECT_EQ(health_.imu.expected_rate, 100);
   for (int i = 0; i < 21; ++i) {
     drive(50);
-    --imu_.imu.accepted;
+    --imu_.imu.oriented;
   }
   EXPECT_EQ(health_.imu.state, sensor_health_t::SLOW);
   EXPECT_EQ(health_.state, health_t::OK);

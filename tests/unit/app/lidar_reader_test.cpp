@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <array>
 #include <chrono>
 #include <functional>
+#include <mutex>
 #include <thread>
+#include <utility>
 
 #include "unit/app/sending_lidar.hpp"
 #include "unit/free_port.hpp"
@@ -17,26 +20,35 @@ namespace {
 /// Stands for a GPIO line: what is written into the pipe are the stamps of edges.
 class PulsePipe {
 public:
-  PulsePipe() {
+  PulsePipe() { plug_in(); }
+  void plug_in() {
     int ends[2];
     EXPECT_EQ(pipe2(ends, O_NONBLOCK | O_CLOEXEC), 0);
-    reading_ = Descriptor(ends[0]);
+    const std::scoped_lock lock(mutex_);
+    plugged_in_ = Descriptor(ends[0]);
     writing_ = Descriptor(ends[1]);
   }
   void pulse(std::int64_t stamp_ns) const {
     EXPECT_EQ(write(writing_.get(), &stamp_ns, sizeof stamp_ns), sizeof stamp_ns);
   }
   void take_away() { writing_ = Descriptor(); }
-  RobotLines::Pulses line() const {
-    return {reading_.get(), [this]() -> std::optional<std::int64_t> {
+  RobotLines::Pulses line() {
+    return {[this] {
+              const std::scoped_lock lock(mutex_);
+              if (reading_.get() < 0) reading_ = std::exchange(plugged_in_, Descriptor());
+              return reading_.get();
+            },
+            [this]() -> std::optional<std::int64_t> {
               std::int64_t stamp_ns = 0;
               if (read(reading_.get(), &stamp_ns, sizeof stamp_ns) <= 0) return std::nullopt;
               return stamp_ns;
-            }};
+            },
+            [this] { reading_ = Descriptor(); }};
   }
 
 private:
-  Descriptor reading_, writing_;
+  std::mutex mutex_;
+  Descriptor plugged_in_, reading_, writing_;
 };
 
 class LidarReaderTest : public ::testing::Test {
@@ -83,11 +95,30 @@ TEST_F(LidarReaderTest, PulsesLockTheLidarsClock) {
   EXPECT_GE(reader_->status().pulses, 3U);
 }
 
-TEST_F(LidarReaderTest, GoesOnWithoutTheLineWhenItsChipIsGone) {
+TEST_F(LidarReaderTest, GoesOnWithoutTheLineWhenItsChipIsGoneAndTakesItUpAgain) {
   pulses_.take_away();
   EXPECT_TRUE(until([](const LidarStatus& status) { return status.is_pps_lost; }));
   const SendingLidar lidar(settings_.port);
   EXPECT_TRUE(until([](const LidarStatus& status) { return status.lidar.sweeps > 0; }));
+  EXPECT_EQ(reader_->status().pulses, 0U);
+  pulses_.plug_in();
+  EXPECT_TRUE(until([](const LidarStatus& status) { return !status.is_pps_lost; }));
+  pulses_.pulse(lidar.last_second_ns());
+  EXPECT_TRUE(until([](const LidarStatus& status) { return status.pulses == 1; }));
+}
+
+TEST_F(LidarReaderTest, APulseThatTheLidarDoesNotHearMeansNothing) {
+  const SendingLidar lidar(settings_.port);
+  constexpr std::array<std::uint8_t, 512> kWithoutPulse{};
+  LocalSender(settings_.position_port)(kWithoutPulse);
+  ASSERT_TRUE(until([](const LidarStatus& status) {
+    return status.has_no_pulse && status.clock.state == ClockState::estimated;
+  }));
+  EXPECT_TRUE(until([&](const LidarStatus& status) {
+    pulses_.pulse(lidar.last_second_ns());
+    return status.pulses > 20;
+  }));
+  EXPECT_EQ(reader_->status().clock.state, ClockState::estimated);
 }
 
 }  // namespace

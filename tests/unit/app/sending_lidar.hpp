@@ -6,12 +6,31 @@
 
 #include <chrono>
 #include <cstdint>
+#include <span>
 #include <thread>
 
 #include "scree/core/descriptor.hpp"
 #include "unit/velodyne/packet_builder.hpp"
 
 namespace scree {
+
+/// Sends datagrams to a port of this computer.
+class LocalSender {
+public:
+  explicit LocalSender(int port) {
+    to_.sin_family = AF_INET;
+    to_.sin_port = htons(static_cast<std::uint16_t>(port));
+    to_.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  }
+  void operator()(std::span<const std::uint8_t> bytes) const {
+    sendto(socket_.get(), bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&to_),
+           sizeof to_);
+  }
+
+private:
+  Descriptor socket_{::socket(AF_INET, SOCK_DGRAM, 0)};
+  sockaddr_in to_{};
+};
 
 /// A VLP-16 that turns 20 times a second and sends to a port of this computer, until it is
 /// destroyed. Its clock begins with it.
@@ -32,11 +51,7 @@ private:
 
   void run(const std::stop_token& stop, int port) const {
     constexpr int kStep = 80;  // hundredths of a degree between two blocks
-    const Descriptor socket(::socket(AF_INET, SOCK_DGRAM, 0));
-    sockaddr_in to{};
-    to.sin_family = AF_INET;
-    to.sin_port = htons(static_cast<std::uint16_t>(port));
-    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    const LocalSender send(port);
     velodyne::PacketBuilder packet;
     packet.all_shots(2500, 40);
     for (int i = 0; !stop.stop_requested(); ++i) {
@@ -44,8 +59,7 @@ private:
       packet.timestamp(static_cast<std::uint32_t>(due_ns / 1000));
       packet.turn(i * kStep * static_cast<int>(velodyne::kBlocks) % velodyne::kFullTurn, kStep);
       std::this_thread::sleep_until(start_ + std::chrono::nanoseconds(due_ns));
-      sendto(socket.get(), packet.bytes().data(), packet.bytes().size(), 0,
-             reinterpret_cast<const sockaddr*>(&to), sizeof to);
+      send(packet.bytes());
     }
   }
 

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "scree/core/nanoseconds.hpp"
 
 namespace scree {
@@ -15,22 +17,21 @@ class SensorWatchTest : public ::testing::Test {
 protected:
   /// Looks every 50 ms while so many messages come and get lost each time; the log of the time.
   std::string run(std::int64_t milliseconds, std::uint64_t messages, std::uint64_t lost = 0) {
-    std::string log;
-    for (std::int64_t end = now_ + milliseconds * kMillisecond; now_ < end;) {
-      now_ += 50 * kMillisecond;
+    return wait(milliseconds, [=, this] {
       status_.messages += messages;
       status_.lost += lost;
       if (messages > 0) status_.last_heard_ns = status_.last_message_ns = now_;
-      log += look();
-    }
-    return log;
+    });
   }
   /// And while as much comes that nobody understands.
   std::string run_with_noise(std::int64_t milliseconds) {
+    return wait(milliseconds, [this] { status_.last_heard_ns = now_; });
+  }
+  std::string wait(std::int64_t milliseconds, const std::function<void()>& come) {
     std::string log;
     for (const std::int64_t end = now_ + milliseconds * kMillisecond; now_ < end;) {
       now_ += 50 * kMillisecond;
-      status_.last_heard_ns = now_;
+      come();
       log += look();
     }
     return log;

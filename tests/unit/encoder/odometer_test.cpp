@@ -84,6 +84,17 @@ TEST(Odometer, AGarbledReadingIsRefusedAndTheNextGoesOn) {
   EXPECT_EQ(wheel.odometer.rebased(), 0U);
 }
 
+// A wheel may be so fast, with frames so late, but it does not become so from one to the next.
+TEST(Odometer, AnImpossibleAccelerationIsRefused) {
+  Wheel wheel(counter());
+  wheel.roll(1, 1, 1);
+  wheel.t_ns += 5 * kMillisecond;
+  constexpr std::int64_t kJump = 850;  // counts, 0.13 m
+  EXPECT_EQ(wheel.send(wheel.raw() + kJump), Refusal::implausible);
+  wheel.t_ns -= 5 * kMillisecond;
+  EXPECT_EQ(wheel.roll(1, 1, 1), 0);
+}
+
 TEST(Odometer, ARestartedCounterDoesNotMakeTheDistanceJump) {
   for (const int interval : {5, 10, 50, 100}) {
     Wheel wheel(counter(), interval * kMillisecond);

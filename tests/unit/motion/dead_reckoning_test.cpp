@@ -101,8 +101,8 @@ TEST(DeadReckoning, CarriesOnWhereASensorIsSilent) {
   follower.sensors().gather();
   for (int i = 1; i <= 100; ++i) {
     const MotionStep step = follower.sweep(kSweep * i);
-    EXPECT_EQ(step.knows_attitude, i <= 30 || i >= 50) << i;
-    EXPECT_EQ(step.knows_distance, i <= 60 || i >= 90) << i;
+    EXPECT_EQ(step.knows_attitude, i <= 31 || i >= 50) << i;
+    EXPECT_EQ(step.knows_distance, i <= 61 || i >= 90) << i;
     ASSERT_LT((follower.position() - follower.true_position(kSweep * i)).norm(), 0.01) << i;
   }
 }
@@ -111,11 +111,11 @@ TEST(DeadReckoning, TakesWhatIsAssumedForASilentSensor) {
   const SimpleDrive still = test::helix(0, 0, 0);
   Follower follower(still);
   still.put(follower.sensors(), 0, 0.5);
-  for (int i = 1; i <= 6; ++i) follower.sweep(kSweep * i);
+  for (int i = 1; i <= 7; ++i) follower.sweep(kSweep * i);
   follower.reckoning().assume_rate({0, 0, 0.5});
   follower.reckoning().assume_speed(2);
   EXPECT_EQ(follower.reckoning().speed(), 2);
-  const MotionStep step = follower.sweep(0.7);
+  const MotionStep step = follower.sweep(0.8);
   EXPECT_FALSE(step.knows_attitude || step.knows_distance);
   EXPECT_NEAR(step.distance, 0.2, 1e-9);
   EXPECT_NEAR(step.turned(), 0.05, 1e-9);

@@ -251,6 +251,20 @@ TEST(ImuStream, ElseTheCounterAtTheUsualRateNearby) {
   }
 }
 
+TEST(ImuStream, ACountedRateIsMeasuredAnewAfterASilence) {
+  Listener listener;
+  std::int64_t t_ns = kEpoch;
+  for (const int hertz : {100, 400}) {
+    for (unsigned i = 0; i < 10U * static_cast<unsigned>(hertz); ++i) {
+      t_ns += kSecond / hertz;
+      listener.stream.take(data_message({counter(i), kRate}), t_ns);
+      ASSERT_NEAR(static_cast<double>(listener.samples.back().t_ns - t_ns), 0, 5e6);
+    }
+    EXPECT_EQ(listener.stream.clock().state(), ClockState::estimated) << hertz;
+    t_ns += 3 * kSecond;
+  }
+}
+
 TEST(ImuStream, ElseTheArrival) {
   Listener listener;
   for (int i = 0; i < 300; ++i) {

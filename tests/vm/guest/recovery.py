@@ -115,11 +115,14 @@ def gpio_chip_goes(robot):
     """the adapter of the lines is unplugged, which is said, and plugged in again"""
     mark = journal.mark()
     robot.chip.unplug()
-    journal.says("the heartbeat line cannot be set", mark)
+    journal.says("line cannot be set", mark)
     robot.chip.plug_in()
-    journal.says("the heartbeat line can be set again", mark)
+    journal.says("line can be set again", mark)
     robot.silence()
     until(lambda: robot.chip.value("stop") == 1, "the stop line")
+    robot.chip.unplug()
+    robot.chip.plug_in()
+    until(lambda: robot.chip.value("stop") == 1, "the stop line of a robot that is still blind")
     robot.play()
     until(lambda: robot.chip.value("stop") == 0, "the stop line lets go")
 

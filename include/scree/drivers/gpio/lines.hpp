@@ -34,19 +34,24 @@ private:
   LineHandle line_;  // none while the chip is gone
 };
 
-/// A line on which pulses arrive: their rising edges (falling, where it is active low).
+/// A line on which pulses arrive: their rising edges (falling, where it is active low). Opened
+/// again when its chip comes back.
 class PulseInput {
 public:
   /// @param name as that of an Output
   static Result<PulseInput> open(const std::string& name, bool is_active_low);
 
-  /// Host time of the next pulse that waits, by the kernel's stamp; or nothing. Never blocks; poll
-  /// descriptor() for reading.
+  /// To poll for reading. -1 while the line is not to be had; each call tries anew.
+  int descriptor();
+  /// Host time of the next pulse that waits, by the kernel's stamp; or nothing. Never blocks.
   std::optional<std::int64_t> read();
-  int descriptor() const;
+  /// Lets go of a line whose chip is gone.
+  void close() { line_.reset(); }
 
 private:
-  LineHandle line_;
+  std::string name_;
+  bool is_active_low_ = false;
+  LineHandle line_;  // none while the chip is gone
 };
 
 /// The name of the program that holds a line, as it has given it; empty: nobody does. Only looks.

@@ -65,7 +65,7 @@ private:
   std::uint64_t restarts_before_ = 0, steps_before_ = 0;
 
   // Samples counted, to find their rate; their period, once it is known.
-  std::int64_t samples_ = 0, counted_since_ns_ = 0;
+  std::int64_t samples_ = 0, counted_since_ns_ = 0, counted_ns_ = 0;
   std::int64_t period_ns_ = 0;
 };
 
