@@ -61,6 +61,7 @@ const ObstacleList& Pipeline::process(const Sweep& sweep) {
   list_.stamp_ns = sweep.end_ns;
   if (uses_map_) {
     mapper_->add(sweep, *sensors_, timer_);
+    if (mapper_->has_begun_anew()) tracker_.clear();
     detect_in_map();
   } else {
     detect_in_sweep(sweep);

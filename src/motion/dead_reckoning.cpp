@@ -42,7 +42,7 @@ void DeadReckoning::go_on(const SyncBuffer& sensors, std::int64_t t_ns) {
   State next = state_;
   next.attitude = seen;
   next.knows_attitude = attitude.has_value();
-  const auto wheel = sensors.wheel_at(t_ns);
+  const auto wheel = trusts_wheel_ ? sensors.wheel_at(t_ns) : std::nullopt;
   next.knows_distance = wheel.has_value();
   double moved = speed_ * seconds;
   if (wheel) {
@@ -58,7 +58,8 @@ void DeadReckoning::go_on(const SyncBuffer& sensors, std::int64_t t_ns) {
 }
 
 MotionStep DeadReckoning::advance(const SyncBuffer& sensors, std::int64_t begin_ns,
-                                  std::int64_t end_ns, MotionTrack& track) {
+                                  std::int64_t end_ns, MotionTrack& track, bool trusts_wheel) {
+  trusts_wheel_ = trusts_wheel;
   MotionStep step;
   states_.clear();
   state_.position.setZero();

@@ -1,16 +1,14 @@
 #include "scree/motion/levelling.hpp"
 
 #include <Eigen/LU>
-#include <algorithm>
-#include <optional>
 
+#include "felt.hpp"
 #include "scree/core/rotation.hpp"
 #include "scree/motion/pose_filter.hpp"
 
 namespace scree {
 namespace {
 
-constexpr double kGravity = 9.81;
 constexpr double kWindow = 1;  // seconds
 // Standard deviations.
 constexpr double kLean = PoseFilter::kTilt;  // of what the first sweep was laid by, rad ...
@@ -18,26 +16,6 @@ constexpr double kLeanWalk = 0.0005;         // ... and since then, rad in a squ
 constexpr double kBias = 0.03;               // of the accelerometer, m/s^2
 constexpr double kNoise = 0.05;  // of a window: vibration, slip and the wheel's steps, m/s^2
 constexpr double kFarthest = 5;  // in standard deviations: beyond it a window felt a shock
-
-/// The specific force that the IMU felt during a step, in the `level` frame, m/s. Nothing when it
-/// has hardly said.
-std::optional<Eigen::Vector3d> felt_during(const SampleHistory<ImuSample>& imu,
-                                           const MotionStep& step) {
-  Eigen::Vector3d felt = Eigen::Vector3d::Zero();
-  std::int64_t known_ns = 0;
-  const std::size_t end = imu.count_until(step.end_ns);
-  for (std::size_t i = std::max<std::size_t>(imu.count_until(step.begin_ns), 1); i < end; ++i) {
-    const ImuSample& sample = imu[i];
-    const std::int64_t since_ns = sample.t_ns - imu[i - 1].t_ns;
-    if (!sample.has_acceleration || !sample.acceleration.allFinite()) continue;
-    if (since_ns > SyncBuffer::kSilenceNs) continue;
-    felt += sample.orientation * sample.acceleration * (static_cast<double>(since_ns) * 1e-9);
-    known_ns += since_ns;
-  }
-  const double known = static_cast<double>(known_ns) * 1e-9;
-  if (known < 0.5 * step.seconds()) return std::nullopt;
-  return felt * (step.seconds() / known);
-}
 
 }  // namespace
 
@@ -57,7 +35,8 @@ void Levelling::advance(const SyncBuffer& sensors, const MotionStep& step, const
   const double seconds = step.seconds();
   const bool is_known =
       step.knows_attitude && step.knows_distance && seconds > 0 && seconds < kLongest;
-  const auto felt = is_known ? felt_during(sensors.imu(), step) : std::nullopt;
+  const auto felt =
+      is_known ? felt_during(sensors.imu(), step.begin_ns, step.end_ns) : std::nullopt;
   if (!felt) {
     has_window_ = false;
     return;

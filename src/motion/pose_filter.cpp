@@ -22,9 +22,9 @@ constexpr double kSlip = 0.02;         // along the way, metres in a square root
 constexpr double kSideSlip = 0.006;    // ... across it ...
 constexpr double kHeave = 0.008;       // ... and upwards
 constexpr double kShake = 0.001;       // metres in each direction each step
-constexpr double kSilentTurn = 0.25;   // turning while the IMU is silent, rad/s ...
-constexpr double kSilentTilt = 0.10;   // ... and tilting
-constexpr double kSilentSpeed = 0.4;   // m/s while the encoder is silent, at full speed
+constexpr double kSilentTurn = 0.08;   // while the IMU is silent, rad in a square root of a second
+constexpr double kSilentTilt = 0.032;  // the same of roll and pitch
+constexpr double kSilentWay = 0.13;    // while the encoder is, metres in a square root of a second
 constexpr double kAnotherYaw = 0.5;    // rad: an IMU that comes back with this has restarted ...
 constexpr double kAnotherYawError = 0.05;  // ... and takes up the yaw this well, rad
 
@@ -117,7 +117,7 @@ void PoseFilter::predict(const MotionStep& step) {
                       square(kHeave) * distance);
   way.array() += square(kShake);
   if (!step.knows_distance) {
-    way.x() += square(kSilentSpeed * seconds);
+    way.x() += square(kSilentWay) * seconds;
   }
   covariance_.block<3, 3>(0, 0) += to_map * way.asDiagonal() * to_map.transpose();
   if (step.knows_attitude) {
@@ -126,9 +126,9 @@ void PoseFilter::predict(const MotionStep& step) {
     covariance_(4, 4) += wander;
     covariance_(5, 5) += square(kYawWalk) * drifting_s;
   } else {
-    covariance_(3, 3) += square(kSilentTilt * seconds);
-    covariance_(4, 4) += square(kSilentTilt * seconds);
-    covariance_(5, 5) += square(kSilentTurn * seconds);
+    covariance_(3, 3) += square(kSilentTilt) * seconds;
+    covariance_(4, 4) += square(kSilentTilt) * seconds;
+    covariance_(5, 5) += square(kSilentTurn) * seconds;
   }
   covariance_(6, 6) += square(kScaleWalk) * distance;
   covariance_(7, 7) += square(kDriftWalk) * seconds;

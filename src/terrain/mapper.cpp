@@ -14,6 +14,7 @@ Mapper::Mapper(const Settings& settings)
       registers_(settings.map.registration),
       surfel_reach_(settings.map.registration_reach),
       dead_reckoning_(settings.imu.mount().rotation),
+      slip_watch_(settings.imu.mount().rotation, settings.imu.translation),
       sweep_(static_cast<std::size_t>(settings.map.max_points)),
       levelling_(settings.imu.translation),
       registration_(static_cast<std::size_t>(settings.map.max_points)),
@@ -23,10 +24,12 @@ Mapper::Mapper(const Settings& settings)
 void Mapper::add(const Sweep& sweep, const SyncBuffer& sensors, StageTimer& timer) {
   const std::int64_t begin_ns = sweep.end_ns + (sweep.points.empty() ? 0 : sweep.time_ns[0]);
   const Pose before = filter_.pose();
-  step_ = dead_reckoning_.advance(sensors, begin_ns, sweep.end_ns, track_);
+  watch_for_slip(sensors, sweep.end_ns);
+  step_ = dead_reckoning_.advance(sensors, begin_ns, sweep.end_ns, track_, !slip_watch_.slips());
   const bool has_known_attitude = filter_.has_known_attitude();
   filter_.predict(step_);
-  if (filter_.has_known_attitude() && !has_known_attitude) {
+  has_begun_anew_ = filter_.has_known_attitude() && !has_known_attitude;
+  if (has_begun_anew_) {
     // What was mapped before leans as the robot stood.
     surfels_.clear();
     map_.clear();
@@ -42,6 +45,14 @@ void Mapper::add(const Sweep& sweep, const SyncBuffer& sensors, StageTimer& time
   levelling_.advance(sensors, step_, pose());
   map_.add(sweep_, filter_.pose(), sweep.end_ns);
   timer.done(Stage::map);
+}
+
+void Mapper::watch_for_slip(const SyncBuffer& sensors, std::int64_t end_ns) {
+  slip_watch_.advance(sensors, dead_reckoning_.end_ns(), end_ns, dead_reckoning_.speed());
+  if (slip_watch_.slips()) ++slips_;
+  if (slip_watch_.slips() || !sensors.wheel_at(end_ns)) {
+    dead_reckoning_.assume_speed(slip_watch_.speed());
+  }
 }
 
 void Mapper::correct() {

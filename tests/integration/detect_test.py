@@ -231,6 +231,28 @@ class DetectTest(unittest.TestCase):
         ids = [obstacle["id"] for each in lists for obstacle in each["obstacles"]]
         self.assertLess(len(set(ids)), len(ids) / 10)
 
+    def test_what_finds_no_room_and_a_wheel_that_slips_are_said(self):
+        capture = self.path("drive")
+        self.scree("simulate", capture, "--seed", "9", "--scene", "easy", "--seconds", "4")
+        self.assertNotIn("map:", self.scree("detect", capture, "--out", self.path("l")).stderr)
+        with open(os.path.join(capture, "can.log")) as log:
+            frames = log.readlines()
+        # This robot's encoder sends its speed in bytes 2 and 3, mm/s; for a second it spins.
+        for i in range(len(frames) // 2, len(frames) * 3 // 4):
+            frame, payload = frames[i].rstrip().split("#")
+            if not frame.endswith("18FF50E5"):
+                continue
+            data = bytearray.fromhex(payload)
+            struct.pack_into("<h", data, 2, struct.unpack_from("<h", data, 2)[0] + 1500)
+            frames[i] = f"{frame}#{data.hex().upper()}\n"
+        with open(os.path.join(capture, "can.log"), "w") as log:
+            log.writelines(frames)
+        with open(os.path.join(capture, "scree.toml"), "a") as config:
+            config.write("\n[map]\nmax_voxels = 1024\n")
+        said = self.scree("detect", capture, "--out", self.path("l")).stderr
+        self.assertRegex(said, r"map: \d+ points found no room: raise map.max_voxels")
+        self.assertRegex(said, r"map: \d+ sweeps during which the wheel slipped")
+
 
 if __name__ == "__main__":
     outcome = unittest.main(argv=sys.argv[:1] + sys.argv[3:], exit=False).result

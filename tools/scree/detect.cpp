@@ -56,14 +56,29 @@ private:
   std::string line_;
 };
 
+void warn(std::string_view what, std::uint64_t count, std::string_view reason) {
+  if (count > 0) fmt::print(stderr, "scree: {}: {} {}\n", what, count, reason);
+}
+
 void warn_of_losses(const StageCounts& counts, std::string_view what) {
-  const auto warn = [&](std::size_t count, std::string_view reason) {
-    if (count > 0) fmt::print(stderr, "scree: {}: {} {}\n", what, count, reason);
-  };
-  warn(counts.dropped, "points beyond max_points were dropped");
-  warn(counts.refused, "points are not finite or too far out, and were left out");
-  warn(counts.edges_dropped, "edge points beyond max_edge_points were dropped");
-  warn(counts.obstacles_dropped, "obstacles beyond max_obstacles were dropped");
+  warn(what, counts.dropped, "points beyond max_points were dropped");
+  warn(what, counts.refused, "points are not finite or too far out, and were left out");
+  warn(what, counts.edges_dropped, "edge points beyond max_edge_points were dropped");
+  warn(what, counts.obstacles_dropped, "obstacles beyond max_obstacles were dropped");
+}
+
+/// Of the whole capture.
+void warn_of_losses(Pipeline& pipeline, const WaitingSweeps& sweeps) {
+  const Mapper& mapper = pipeline.mapper();
+  warn("map", mapper.map().dropped(), "points found no room: raise map.max_voxels");
+  warn("map", mapper.slips(), "sweeps during which the wheel slipped; it was not believed");
+  warn("tracks", pipeline.tracker().dropped(), "found no room: raise detect.map.max_obstacles");
+  warn("motion", pipeline.sensors().dropped(), "samples of IMU or encoder found no room");
+  warn("motion", pipeline.sensors().late(),
+       "samples of IMU or encoder were not newer than the one before, or no numbers");
+  warn("motion", sweeps.not_covered(),
+       "sweeps went on without the samples of IMU or encoder that cover them: those came later "
+       "than map.wait");
 }
 
 /// Empty without one.
@@ -125,6 +140,7 @@ void detect_in_capture(const DetectOptions& options) {
   writer.finish();
   report_capture(capture, stream);
   motion.report();
+  warn_of_losses(*pipeline, waiting);
 }
 
 }  // namespace

@@ -27,12 +27,21 @@ public:
   void process_ready(std::int64_t now_ns) {
     while (!waiting_.empty()) {
       const auto& [sweep, due_ns] = waiting_.front();
-      if (now_ns < due_ns && !pipeline_.is_covered(sweep.end_ns)) return;
+      const bool is_covered = pipeline_.is_covered(sweep.end_ns);
+      if (now_ns < due_ns && !is_covered) return;
+      if (!is_covered) ++not_covered_;
       process_(sweep);
       waiting_.pop_front();
     }
   }
-  void process_all() { process_ready(INT64_MAX); }
+  /// At the end of the capture, after which no sample comes.
+  void process_all() {
+    const std::size_t before = not_covered_;
+    process_ready(INT64_MAX);
+    not_covered_ = before;
+  }
+  /// Sweeps that waited in vain.
+  std::size_t not_covered() const { return not_covered_; }
 
 private:
   static Sweep copy(const Sweep& sweep) {
@@ -45,6 +54,7 @@ private:
     copied.end_ns = sweep.end_ns;
     copied.packets = sweep.packets;
     copied.dropped = sweep.dropped;
+    copied.is_whole = sweep.is_whole;
     return copied;
   }
 
@@ -52,6 +62,7 @@ private:
   Pipeline& pipeline_;
   std::function<void(const Sweep&)> process_;
   std::deque<std::pair<Sweep, std::int64_t>> waiting_;
+  std::size_t not_covered_ = 0;
 };
 
 }  // namespace scree::cli

@@ -66,14 +66,17 @@ public:
 
   /// From the end of the last step (the first: `begin_ns`) to `end_ns`.
   /// @param track the last 0.3 s of it at most
+  /// @param trusts_wheel else the encoder counts as silent
   MotionStep advance(const SyncBuffer& sensors, std::int64_t begin_ns, std::int64_t end_ns,
-                     MotionTrack& track);
+                     MotionTrack& track, bool trusts_wheel = true);
 
   /// What a silent sensor would have said, by whoever knows better.
   void assume_rate(const Eigen::Vector3d& rate) { rate_ = rate; }  ///< rad/s, `base`
   void assume_speed(double speed) { speed_ = speed; }              ///< m/s
   const Eigen::Vector3d& rate() const { return rate_; }
   double speed() const { return speed_; }
+  /// Of the last step.
+  std::int64_t end_ns() const { return now_ns_; }
 
 private:
   struct State {
@@ -91,7 +94,7 @@ private:
   double distance_ = 0;  // of the step under way
   Eigen::Vector3d rate_ = Eigen::Vector3d::Zero();
   double speed_ = 0;
-  bool started_ = false;
+  bool started_ = false, trusts_wheel_ = true;
   FixedVector<State> states_{MotionTrack::kMostSteps + 1};
 };
 

@@ -9,6 +9,7 @@
 #include "scree/motion/deskew.hpp"
 #include "scree/motion/levelling.hpp"
 #include "scree/motion/pose_filter.hpp"
+#include "scree/motion/slip_watch.hpp"
 #include "scree/sync/sync_buffer.hpp"
 #include "scree/terrain/registration.hpp"
 #include "scree/terrain/rolling_map.hpp"
@@ -40,10 +41,15 @@ public:
   const RollingMap& map() const { return map_; }
   const MotionStep& step() const { return step_; }
   const Registration::Outcome& registration() const { return outcome_; }
+  /// Whether the last sweep found the map's frame wrong, so that the map began anew with it.
+  bool has_begun_anew() const { return has_begun_anew_; }
+  /// Sweeps during which the wheel slipped.
+  std::uint64_t slips() const { return slips_; }
   /// The last sweep in `base` at its end.
   const DeskewedSweep& sweep() const { return sweep_; }
 
 private:
+  void watch_for_slip(const SyncBuffer& sensors, std::int64_t end_ns);
   void correct();
   void assume_motion(const Pose& before);
 
@@ -51,6 +57,9 @@ private:
   bool registers_;
   double surfel_reach_;
   DeadReckoning dead_reckoning_;
+  SlipWatch slip_watch_;
+  std::uint64_t slips_ = 0;
+  bool has_begun_anew_ = false;
   MotionTrack track_;
   DeskewedSweep sweep_;
   PoseFilter filter_;
