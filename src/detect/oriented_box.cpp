@@ -39,7 +39,8 @@ OrientedBox smallest_box(PointView points, std::span<const std::uint32_t> indice
   }
   if (best.length < best.width) {
     std::swap(best.length, best.width);
-    best.yaw -= kPi / 2;
+    // At most pi/2, though the nearest float lies above it.
+    best.yaw = best.yaw > 0 ? best.yaw - kPi / 2 : std::nextafter(kPi / 2, 0.0F);
   }
   return best;
 }

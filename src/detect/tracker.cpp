@@ -48,9 +48,10 @@ void Tracker::update(std::int64_t stamp_ns, const Eigen::Vector3d& robot,
   for (Track& track : tracks_) {
     if (!track.is_matched) {
       const Sight seen = sight(track.obstacle.center);
-      const bool is_empty = seen == Sight::empty;
+      // The middle of a hole is empty as long as it is there.
+      track.is_seen_empty = seen == Sight::empty && track.obstacle.height > 0;
       learn(track, nullptr,
-            is_empty                ? std::min(2 * share, 1.0F)
+            track.is_seen_empty     ? std::min(2 * share, 1.0F)
             : seen == Sight::unseen ? 0
                                     : share);
       // From the future, too, when the clock was set back.
@@ -65,6 +66,7 @@ void Tracker::update(std::int64_t stamp_ns, const Eigen::Vector3d& robot,
     Track track;
     learn(track, &found[i], share);
     track.found_ns = stamp_ns;
+    track.is_matched = true;
     track.obstacle.id = 0;
     if (!tracks_.push_back(track)) ++dropped_;
   }
@@ -98,17 +100,19 @@ void Tracker::match(std::span<const Obstacle> found) {
   track_of_.assign(found.size(), -1);
   pairs_.clear();
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
-    tracks_[t].is_matched = false;
+    const bool was_matched = std::exchange(tracks_[t].is_matched, false);
     for (std::size_t i = 0; i < found.size(); ++i) {
       const bool same_side = (tracks_[t].obstacle.height > 0) == (found[i].height > 0);
       if (!same_side || !may_be_same(tracks_[t].obstacle, found[i])) continue;
       const double distance = (tracks_[t].obstacle.center - found[i].center).head<2>().norm();
-      const Pair pair{static_cast<float>(distance), static_cast<std::uint32_t>(t),
+      const Pair pair{was_matched, static_cast<float>(distance), static_cast<std::uint32_t>(t),
                       static_cast<std::uint32_t>(i)};
       if (!pairs_.push_back(pair)) ++dropped_;
     }
   }
+  // Of two tracks on one thing the one that had it last keeps it.
   std::sort(pairs_.begin(), pairs_.end(), [](const Pair& a, const Pair& b) {
+    if (a.was_matched != b.was_matched) return a.was_matched;
     if (a.distance != b.distance) return a.distance < b.distance;
     return a.track != b.track ? a.track < b.track : a.found < b.found;
   });
@@ -134,14 +138,17 @@ void Tracker::learn(Track& track, const Obstacle* found, float share) const {
   const std::int64_t id = track.obstacle.id;
   track.obstacle = *found;
   track.obstacle.id = id;
+  track.is_seen_empty = false;
   ++track.found;
   float& best = track.features[track_best];
   best = std::max(best, confidence);
   track.features[track_height] = static_cast<float>(found->height);
 }
 
-/// Confidence and kind of every track.
+/// Confidence and kind of every track. What is published fades, whatever the judge thinks of a
+/// list that misses it.
 void Tracker::judge() {
+  constexpr float kMostFall = 0.2F, kMostFallEmpty = 0.4F;  // of the confidence, in a list
   for (Track& track : tracks_) {
     constexpr double kFar = 3;
     double surer = kFar;
@@ -154,7 +161,9 @@ void Tracker::judge() {
     const Answer answer =
         judge_ ? (*judge_)(track.features)
                : Answer{track.features[track_positive], track.features[track_negative]};
-    track.confidence = answer.confidence();
+    const float most_fall = track.is_seen_empty ? kMostFallEmpty : kMostFall;
+    const float least = track.is_published ? track.confidence - most_fall : 0;
+    track.confidence = std::max(answer.confidence(), least);
     track.obstacle.kind = answer.kind();
   }
 }

@@ -155,8 +155,8 @@ struct MapSettings {
 struct TrackingSettings {
   std::string network = "network_track.txt";
   double smoothing = 0.4;
-  double appear = 0.45;
-  double disappear = 0.35;
+  double appear = 0.5;
+  double disappear = 0.3;
   double remember = 1.0;
   double reach = 10;
 };

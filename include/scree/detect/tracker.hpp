@@ -41,7 +41,8 @@ public:
     std::uint32_t found = 0;  ///< lists that had it
     std::int64_t found_ns = 0;
     bool is_published = false;
-    bool is_matched = false;
+    bool is_matched = false;     ///< found in the last list
+    bool is_seen_empty = false;  ///< its place, in the last list
 
     /// Confidence by the detector's answers alone.
     float smoothed() const { return std::max(features[track_positive], features[track_negative]); }
@@ -70,6 +71,7 @@ public:
 
 private:
   struct Pair {
+    bool was_matched;  ///< the track, in the list before
     float distance;
     std::uint32_t track, found;
   };

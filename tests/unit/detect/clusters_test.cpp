@@ -69,8 +69,8 @@ TEST(OrientedBox, IsFoundAtEveryAngle) {
     EXPECT_NEAR(box.center_x, 7, 1e-3);
     EXPECT_NEAR(box.center_y, -3, 1e-3);
     EXPECT_NEAR(std::cos(box.yaw - yaw), 1, 1e-4);
-    EXPECT_GT(box.yaw, -std::numbers::pi / 2 - 1e-6);
-    EXPECT_LE(box.yaw, std::numbers::pi / 2 + 1e-6);
+    EXPECT_GT(double{box.yaw}, -std::numbers::pi / 2);
+    EXPECT_LE(double{box.yaw}, std::numbers::pi / 2);
     EXPECT_NEAR(box.distance(7, -3), 0, 1e-6);
     EXPECT_NEAR(box.distance(static_cast<float>(7 + 3 * std::cos(yaw)),
                              static_cast<float>(-3 + 3 * std::sin(yaw))),

@@ -1,64 +1,13 @@
-#include "scree/detect/tracker.hpp"
-
 #include <gtest/gtest.h>
 
 #include <random>
 #include <set>
 #include <vector>
 
-#include "allocation_counter.hpp"
+#include "detect/tracked_obstacles.hpp"
 
 namespace scree {
 namespace {
-
-constexpr std::int64_t kStart = 1'598'612'523'000'000'000, kList = 100'000'000;
-
-Obstacle at(double x, double y, float confidence = 0.9F) {
-  Obstacle obstacle;
-  obstacle.center = {x, y, 0.2};
-  obstacle.extent = {0.6, 0.4, 0.4};
-  obstacle.yaw = 0.3;
-  obstacle.height = 0.4;
-  obstacle.confidence = confidence;
-  obstacle.points = 50;
-  return obstacle;
-}
-
-Obstacle hole_at(double x, double y, float confidence = 0.9F) {
-  Obstacle obstacle = at(x, y, confidence);
-  obstacle.kind = ObstacleKind::negative;
-  obstacle.height = -0.4;
-  obstacle.center.z() = -0.2;
-  return obstacle;
-}
-
-class TrackerTest : public testing::Test {
-protected:
-  static constexpr std::size_t kMost = 16;
-
-  TrackingSettings settings_{.reach = 100};
-  Tracker tracker_{settings_, kMost};
-  FixedVector<Obstacle> list_{kMost};
-  Sight sight_ = Sight::occupied;
-  Eigen::Vector3d robot_ = Eigen::Vector3d::Zero();
-  std::int64_t now_ns_ = kStart;
-
-  const FixedVector<Obstacle>& update(const std::vector<Obstacle>& found, int times = 1) {
-    for (int i = 0; i < times; ++i) {
-      tracker_.update(
-          now_ns_ += kList, robot_, found, [this](const Eigen::Vector3d&) { return sight_; },
-          list_);
-    }
-    return list_;
-  }
-  /// Lists until the list is as long as asked for; 100 at most.
-  int updates_until(std::size_t size, const std::vector<Obstacle>& found) {
-    for (int i = 1; i < 100; ++i) {
-      if (update(found).size() == size) return i;
-    }
-    return 100;
-  }
-};
 
 TEST_F(TrackerTest, AnObstacleAppearsOnceItWasSeenAgainAndStaysAsItWasFoundLast) {
   EXPECT_EQ(update({at(3, 1)}).size(), 0U) << "seen once";
@@ -137,6 +86,26 @@ TEST_F(TrackerTest, ComesBackWithItsIdWhenItWasOnlyUnseenForAWhile) {
   EXPECT_EQ(list_[0].id, id);
   ASSERT_EQ(update({at(3.05, 1)}).size(), 1U);
   EXPECT_EQ(list_[0].id, id);
+}
+
+// What was two in the first lists is one, whose middle wavers.
+TEST_F(TrackerTest, OfTwoTracksOnOneThingTheOneThatHadItLastKeepsIt) {
+  update({at(3, 1), at(3.15, 1)}, 5);
+  ASSERT_EQ(list_.size(), 2U);
+  const auto one_of_them = [](int i) { return at(i % 2 == 0 ? 3.05 : 3.12, 1); };
+  for (int i = 0; i < 8; ++i) update({one_of_them(i)});
+  ASSERT_EQ(list_.size(), 1U);
+  const std::int64_t id = list_[0].id;
+  for (int i = 0; i < 30; ++i) {
+    ASSERT_EQ(update({one_of_them(i)}).size(), 1U) << i;
+    EXPECT_EQ(list_[0].id, id) << i;
+  }
+}
+
+TEST_F(TrackerTest, TheMiddleOfAHoleIsEmptyAsLongAsItIsThere) {
+  update({hole_at(3, 1)}, 10);
+  sight_ = Sight::empty;
+  EXPECT_GT(updates_until(0, {}), 2);
 }
 
 // A confidence that wavers about a threshold does not make the obstacle come and go.
@@ -308,59 +277,6 @@ TEST_F(TrackerTest, ATracksFeaturesAreWhatTheySayTheyAre) {
   update({surer});
   EXPECT_LT(tracker_.tracks()[0].features[track_positive], 0.65);
   EXPECT_FLOAT_EQ(tracker_.tracks()[0].features[track_best], 0.8F);
-}
-
-// A rock only where something is high, a hole only where it is deep.
-Network judge() {
-  constexpr double kSure = 1000;
-  Network network(2, kTrackFeatures);
-  network.forms.fill(InputForm::raw);
-  const std::span<double> weights = network.weights();
-  constexpr std::size_t kRow = kTrackFeatures + 1;
-  weights[track_height] = kSure;
-  weights[kTrackFeatures] = -0.6 * kSure;
-  weights[kRow + track_height] = -kSure;
-  weights[kRow + kTrackFeatures] = -0.6 * kSure;
-  // Outputs: what the units say, 0 or 1, becomes sigmoid(-3) or sigmoid(3).
-  for (std::size_t output = 0; output < Network::kOutputs; ++output) {
-    weights[network.output_row(output) + output] = 6;
-    weights[network.output_row(output) + 2] = -3;
-  }
-  return network;
-}
-
-TEST_F(TrackerTest, AJudgeDecidesWhatIsPublishedAndAsWhat) {
-  tracker_ = Tracker(settings_, kMost, judge());
-  EXPECT_EQ(update({at(3, 1, 0.99F)}, 10).size(), 0U) << "sure, but the judge says no";
-  Obstacle high = at(3, 1, 0.2F);
-  high.height = 0.7;
-  ASSERT_EQ(update({high}).size(), 1U) << "unsure, but the judge says yes";
-  EXPECT_EQ(list_[0].kind, ObstacleKind::positive);
-  EXPECT_NEAR(list_[0].confidence, 1 / (1 + std::exp(-3)), 1e-6);
-  tracker_ = Tracker(settings_, kMost, judge());
-  Obstacle deep = at(3, 1);
-  deep.height = -0.7;
-  update({deep}, 2);
-  ASSERT_EQ(list_.size(), 1U);
-  EXPECT_EQ(list_[0].kind, ObstacleKind::negative) << "whatever the detector says";
-}
-
-TEST_F(TrackerTest, WhatTheDetectorNoLongerFindsGoesWhateverTheJudgeSays) {
-  tracker_ = Tracker(settings_, kMost, judge());
-  Obstacle high = at(3, 1);
-  high.height = 1;
-  update({high}, 10);
-  ASSERT_EQ(list_.size(), 1U);
-  sight_ = Sight::empty;
-  EXPECT_LE(updates_until(0, {}), 4);
-}
-
-TEST_F(TrackerTest, AllocatesNothing) {
-  tracker_ = Tracker(settings_, kMost, judge());
-  const std::vector<Obstacle> found(kMost, at(3, 1));
-  const std::size_t before = test::allocations();
-  update(found, 20);
-  EXPECT_EQ(test::allocations(), before);
 }
 
 }  // namespace
