@@ -54,7 +54,10 @@ bool SensorWatch::update(std::int64_t now_ns, const SensorStatus& status, sensor
                          LogLines& log) {
   const std::int8_t before = health.state, clock_before = health.clock;
   fill(status, health);
-  if (status.last_heard_ns - last_heard_ns_ > kSilence) silent_since_ns_ = last_heard_ns_;
+  if (status.last_heard_ns - last_heard_ns_ > kSilence) {
+    silent_since_ns_ = last_heard_ns_;
+    unclear_since_ns_ = 0;  // half a message before the silence says nothing of what follows
+  }
   last_heard_ns_ = status.last_heard_ns;
   if (status.last_message_ns != last_message_ns_) unclear_since_ns_ = 0;
   last_message_ns_ = status.last_message_ns;
