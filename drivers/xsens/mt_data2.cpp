@@ -134,7 +134,7 @@ Refusal raw_sample(const Item& item, std::optional<RawSample>& out) {
   RawSample& raw = out.emplace();
   Fields fields(item.data);
   for (auto* part : {&raw.acceleration, &raw.rate_of_turn, &raw.magnetic_field}) {
-    for (std::int16_t& value : *part) fields(value);
+    for (std::uint16_t& value : *part) fields(value);
   }
   fields(raw.temperature);
   return Refusal::none;

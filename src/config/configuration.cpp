@@ -67,11 +67,15 @@ private:
     error_ = Error{fmt::format("{}:{}: {} {}", origin_, node.source().begin.line, name, reason)};
   }
 
+  void refuse_with_range(const Key& key, const toml::node& node, std::string_view reason) {
+    refuse(node, full_name(key),
+           fmt::format("{}, accepted is {} to {}{}{}", reason, key.low, key.high,
+                       key.unit.empty() ? "" : " ", key.unit));
+  }
+
   bool in_range(const Key& key, const toml::node& node, double value) {
     if (value >= key.low && value <= key.high) return true;
-    refuse(node, full_name(key),
-           fmt::format("= {} is out of range, accepted is {} to {}{}{}", value, key.low, key.high,
-                       key.unit.empty() ? "" : " ", key.unit));
+    refuse_with_range(key, node, fmt::format("= {} is out of range", value));
     return false;
   }
 
@@ -84,11 +88,11 @@ private:
         refuse(node, full_name(key), "must be true or false");
       }
     } else if constexpr (std::is_integral_v<T>) {
-      if (!node.is_integer()) return refuse(node, full_name(key), "must be a whole number");
+      if (!node.is_integer()) return refuse_with_range(key, node, "must be a whole number");
       const std::int64_t read = **node.as_integer();
       if (in_range(key, node, static_cast<double>(read))) value = static_cast<T>(read);
     } else if constexpr (std::is_same_v<T, double>) {
-      if (!node.is_number()) return refuse(node, full_name(key), "must be a number");
+      if (!node.is_number()) return refuse_with_range(key, node, "must be a number");
       const double read = *node.value<double>();
       if (in_range(key, node, read)) value = read;
     } else if constexpr (std::is_same_v<T, std::string>) {
@@ -104,11 +108,11 @@ private:
   void read_vector(const Key& key, const toml::node& node, Eigen::Vector3d& value) {
     const toml::array* array = node.as_array();
     if (array == nullptr || array->size() != 3) {
-      return refuse(node, full_name(key), "must be three numbers, [x, y, z]");
+      return refuse_with_range(key, node, "must be three numbers, [x, y, z]");
     }
     for (std::size_t i = 0; i < 3; ++i) {
       const toml::node& element = *array->get(i);
-      if (!element.is_number()) return refuse(element, full_name(key), "must be three numbers");
+      if (!element.is_number()) return refuse_with_range(key, element, "must be three numbers");
       const double read = *element.value<double>();
       if (!in_range(key, element, read)) return;
       value[static_cast<Eigen::Index>(i)] = read;

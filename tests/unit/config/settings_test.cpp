@@ -50,10 +50,11 @@ TEST(Settings, ReadsEveryKindOfValue) {
 TEST(Settings, MistakesNameFileLineKeyAndWhatIsAccepted) {
   EXPECT_THAT(error_of("[lidar]\nport = 70000\n"),
               AllOf(HasSubstr("robot.toml:2: lidar.port"), HasSubstr("1 to 65535")));
-  EXPECT_THAT(error_of("[lidar]\nport = 1.5\n"), HasSubstr("whole number"));
+  EXPECT_THAT(error_of("[lidar]\nport = 1.5\n"), HasSubstr("whole number, accepted is 1 to 65535"));
   EXPECT_THAT(error_of("[lidar]\nmodel = \"hdl64\"\n"),
               AllOf(HasSubstr("lidar.model"), HasSubstr("\"puck_lite\"")));
-  EXPECT_THAT(error_of("[lidar]\ntranslation = [1, 2]\n"), HasSubstr("three numbers"));
+  EXPECT_THAT(error_of("[lidar]\ntranslation = [1, 2]\n"),
+              HasSubstr("three numbers, [x, y, z], accepted is -100 to 100 m"));
   EXPECT_THAT(error_of("[lidar]\n\nprot = 2368\n"),
               AllOf(HasSubstr("robot.toml:3"),
                     HasSubstr("lidar.prot is not a setting; the nearest is lidar.port")));

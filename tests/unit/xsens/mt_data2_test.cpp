@@ -193,9 +193,9 @@ TEST(MtData2, TimesTriggersAndRawCounts) {
     EXPECT_EQ(indication->frame, 513);
   }
   ASSERT_TRUE(read.raw_sample);
-  EXPECT_EQ(read.raw_sample->acceleration[2], -200);
-  EXPECT_EQ(read.raw_sample->rate_of_turn[0], -300);
-  EXPECT_EQ(read.raw_sample->magnetic_field[1], -700);
+  EXPECT_EQ(read.raw_sample->acceleration[2], 65336);
+  EXPECT_EQ(read.raw_sample->rate_of_turn[0], 65236);
+  EXPECT_EQ(read.raw_sample->magnetic_field[1], 64836);
   EXPECT_EQ(read.raw_sample->temperature, -900);
   EXPECT_EQ(read.raw_gyro_temperatures, (std::array<std::int16_t, 3>{-1, 2, -32768}));
   EXPECT_EQ(counts.decoded, 6U);

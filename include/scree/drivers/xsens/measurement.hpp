@@ -79,8 +79,8 @@ struct GnssSatInfo {
 
 /// Counts of the sensor's converters (only of devices that do not calibrate by themselves).
 struct RawSample {
-  std::array<std::int16_t, 3> acceleration, rate_of_turn, magnetic_field;
-  std::int16_t temperature;
+  std::array<std::uint16_t, 3> acceleration, rate_of_turn, magnetic_field;
+  std::int16_t temperature;  ///< 1/256 degree Celsius
 };
 
 /// What one MTData2 message holds, as sent; units and axes stand at DataId.

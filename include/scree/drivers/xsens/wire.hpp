@@ -76,7 +76,7 @@ enum class DataId : std::uint16_t {
   rate_of_turn = 0x8020,          ///< x, y, z: in the sensor's axes, rad/s
   delta_q = 0x8030,               ///< w, x, y, z: how far the sensor turned since the last one
   rate_of_turn_hr = 0x8040,       ///< as rate_of_turn, at a high rate
-  raw_acc_gyr_mag_temp = 0xA010,  ///< ten int16: acceleration, rate, magnetic field, temperature
+  raw_acc_gyr_mag_temp = 0xA010,  ///< see RawSample
   raw_gyro_temp = 0xA020,         ///< three int16
   analog_in1 = 0xB010,            ///< uint16
   analog_in2 = 0xB020,            ///< uint16
