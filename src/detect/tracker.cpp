@@ -91,7 +91,7 @@ void Tracker::update(std::int64_t stamp_ns, const Eigen::Vector3d& robot,
   join_pieces(published_);
   remove_shadows(published_);
   for (const Obstacle& obstacle : published_) {
-    if ((obstacle.center - robot).head<2>().norm() > settings_.reach) continue;
+    if (distance_to_box(obstacle, robot) > settings_.reach) continue;
     if (!obstacles.push_back(obstacle)) ++dropped_;
   }
 }

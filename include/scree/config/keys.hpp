@@ -246,8 +246,9 @@ void for_each_key(AnySettings& settings, Visit&& visit) {
   key("remember", track.remember, "s", 0, 60,
       "an obstacle that is not found any more stays this long, unless its place was seen empty");
   key("reach", track.reach, "m", 1, 100,
-      "an obstacle is published within this distance of the robot: farther off the lidar's rings "
-      "lie too far apart to tell it from a slope, so there it is followed only");
+      "an obstacle is published when a part of it lies within this distance of the robot: farther "
+      "off the lidar's rings lie too far apart to tell it from a slope, so there it is followed "
+      "only");
 
   table = "lcm";
   key("url", settings.lcm.url, "", 0, 0,

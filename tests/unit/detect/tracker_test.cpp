@@ -243,6 +243,16 @@ TEST_F(TrackerTest, AnObstacleTooFarOffIsFollowedAndPublishedAtOnceWhenTheRobotI
   EXPECT_EQ(list_[0].id, id);
 }
 
+TEST_F(TrackerTest, AnObstacleOfWhichAPartIsNearEnoughIsPublished) {
+  const double reach = settings_.reach;
+  Obstacle ditch = hole_at(reach + 0.9, 0);
+  ditch.extent = {2, 6, 0.4};
+  ditch.yaw = 0;
+  ASSERT_EQ(update({ditch}, 2).size(), 1U);
+  ditch.center.x() = reach + 1.1;
+  EXPECT_EQ(update({ditch}).size(), 0U);
+}
+
 // Were the time of the last finding ahead for hours, what is unseen would stay so long.
 TEST_F(TrackerTest, GoesOnWhenTheClockIsSet) {
   for (const std::int64_t shift : {-36'000 * kList, 36'000 * kList}) {
