@@ -45,8 +45,10 @@ Pipeline::Pipeline(const Settings& settings, Detector map_detector, Detector swe
       sweep_detector_(std::move(sweep_detector)),
       tracker_(settings.track, static_cast<std::size_t>(settings.detect_map.max_obstacles),
                std::move(judge)),
+      sweep_tracker_(TrackingSettings::for_sweep(),
+                     static_cast<std::size_t>(settings.detect_sweep.max_obstacles)),
       sweep_(static_cast<std::size_t>(settings.detect_sweep.max_points)),
-      found_(static_cast<std::size_t>(settings.detect_map.max_obstacles)),
+      found_(static_cast<std::size_t>(settings.max_obstacles())),
       list_(static_cast<std::size_t>(settings.max_obstacles())) {}
 
 bool Pipeline::is_covered(std::int64_t end_ns) {
@@ -57,7 +59,10 @@ bool Pipeline::is_covered(std::int64_t end_ns) {
 const ObstacleList& Pipeline::process(const Sweep& sweep) {
   timer_.start();
   sensors_->gather();
-  uses_map_ = uses_map_ || sensors_->has_motion();
+  if (!uses_map_ && sensors_->has_motion()) {
+    uses_map_ = true;
+    tracker_.set_next_id(sweep_tracker_.next_id());
+  }
   list_.stamp_ns = sweep.end_ns;
   if (uses_map_) {
     mapper_->add(sweep, *sensors_, timer_);
@@ -85,7 +90,11 @@ void Pipeline::detect_in_map() {
 void Pipeline::detect_in_sweep(const Sweep& sweep) {
   deskew(sweep, lidar_, still_, sweep_);
   timer_.done(Stage::motion);
-  sweep_detector_.detect(sweep_.points, {}, list_.obstacles, timer_);
+  sweep_detector_.detect(sweep_.points, {}, found_, timer_);
+  sweep_tracker_.update(
+      list_.stamp_ns, Eigen::Vector3d::Zero(), {found_.data(), found_.size()},
+      [](const Eigen::Vector3d&) { return Sight::unseen; }, list_.obstacles);
+  timer_.done(Stage::tracking);
 }
 
 StageCounts Pipeline::counts() const {

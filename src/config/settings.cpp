@@ -2,6 +2,8 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <limits>
+
 namespace scree {
 
 // A ring of a single sweep is dense and the next ring far off: the kernel reaches from ring to
@@ -50,6 +52,16 @@ DetectSettings DetectSettings::for_sweep() {
   detect.ground_outer = 1.5;
   detect.network = "network_sweep.txt";
   return detect;
+}
+
+TrackingSettings TrackingSettings::for_sweep() {
+  TrackingSettings track;
+  track.network.clear();
+  track.least_found = 1;
+  track.smoothing = 1;
+  track.appear = track.disappear = track.remember = 0;
+  track.reach = std::numeric_limits<double>::infinity();
+  return track;
 }
 
 Result<std::filesystem::path> find_file(const std::string& name,

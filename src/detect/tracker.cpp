@@ -77,8 +77,8 @@ void Tracker::update(std::int64_t stamp_ns, const Eigen::Vector3d& robot,
     if (track.is_published) {
       track.is_published = track.confidence >= static_cast<float>(settings_.disappear);
     } else {
-      track.is_published =
-          track.confidence >= static_cast<float>(settings_.appear) && track.found >= kLeastFound;
+      track.is_published = track.confidence >= static_cast<float>(settings_.appear) &&
+                           track.found >= settings_.least_found;
       if (track.is_published && track.obstacle.id == 0) track.obstacle.id = next_id_++;
     }
   }

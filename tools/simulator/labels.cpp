@@ -88,8 +88,9 @@ LabelledClusters label_clusters(const Detector& detector, std::span<const Terrai
   return labelled;
 }
 
-LabelledClusters label_tracks(std::span<const Tracker::Track> tracks, double reach,
-                              const Pose& base, std::int64_t stamp_ns, const Truth& truth,
+LabelledClusters label_tracks(std::span<const Tracker::Track> tracks,
+                              const TrackingSettings& tracking, const Pose& base,
+                              std::int64_t stamp_ns, const Truth& truth,
                               const std::set<int>& known) {
   Truth::Sight sight{stamp_ns, {known.begin(), known.end()}, {}};
   for (const TrueObstacle& each : truth.obstacles) {
@@ -97,8 +98,9 @@ LabelledClusters label_tracks(std::span<const Tracker::Track> tracks, double rea
   }
   std::vector<const Tracker::Track*> surest_first;
   for (const Tracker::Track& track : tracks) {
-    const bool is_near = (track.obstacle.center - base.translation).head<2>().norm() <= reach;
-    if (is_near && track.found >= Tracker::kLeastFound) surest_first.push_back(&track);
+    const bool is_near =
+        (track.obstacle.center - base.translation).head<2>().norm() <= tracking.reach;
+    if (is_near && track.found >= tracking.least_found) surest_first.push_back(&track);
   }
   std::ranges::stable_sort(surest_first, std::ranges::greater(), &Tracker::Track::smoothed);
   LabelledClusters labelled;

@@ -35,14 +35,15 @@ struct LabelledClusters {
 LabelledClusters label_clusters(const Detector& detector, std::span<const TerrainFeature> features,
                                 std::span<const int> asked, double least_piece = 0);
 
-/// Names the truth of each track within reach that may be published, by the contract's rules for a
-/// list of this one alone. Of several tracks of an obstacle the surest is it, the others are none.
-/// Left out are those of what is neither known nor nothing.
+/// Names the truth of each track within tracking.reach that may be published, by the contract's
+/// rules for a list of this one alone. Of several tracks of an obstacle the surest is it, the
+/// others are none. Left out are those of what is neither known nor nothing.
 /// @param base where the robot is, in the tracks' frame
 /// @param truth obstacles, and poses at stamp_ns
 /// @param known ids of the obstacles that were asked for by now, wherever they lie
-LabelledClusters label_tracks(std::span<const Tracker::Track> tracks, double reach,
-                              const Pose& base, std::int64_t stamp_ns, const Truth& truth,
+LabelledClusters label_tracks(std::span<const Tracker::Track> tracks,
+                              const TrackingSettings& tracking, const Pose& base,
+                              std::int64_t stamp_ns, const Truth& truth,
                               const std::set<int>& known);
 
 }  // namespace scree

@@ -18,8 +18,9 @@ namespace scree {
 
 /// From sweeps and motion samples to obstacle lists: the daemon and `scree detect` both run this.
 /// Each sweep is added to the map, and obstacles are found in the map. As long as no IMU and no
-/// encoder has said anything, each sweep is taken by itself instead, and `odom` is `base`. Memory
-/// is taken once, in make().
+/// encoder has said anything, each sweep is taken by itself instead, and `odom` is `base`; an
+/// obstacle then keeps its id while it moves little from sweep to sweep. Memory is taken once, in
+/// make().
 class Pipeline {
 public:
   /// @param config_file beside which a relative name of a weights file is looked for first; may be
@@ -52,7 +53,7 @@ public:
   const Detector& detector() const { return uses_map_ ? map_detector_ : sweep_detector_; }
   const PointCloud& ground() const { return uses_map_ ? mapper_->map().cloud() : sweep_.points; }
   const Mapper& mapper() const { return *mapper_; }
-  const Tracker& tracker() const { return tracker_; }
+  const Tracker& tracker() const { return uses_map_ ? tracker_ : sweep_tracker_; }
   bool uses_map() const { return uses_map_; }
   /// Of the last sweep, as the detector counts; points that did not get to it are dropped ones.
   StageCounts counts() const;
@@ -65,7 +66,7 @@ private:
   std::unique_ptr<SyncBuffer> sensors_;
   std::unique_ptr<Mapper> mapper_;
   Detector map_detector_, sweep_detector_;
-  Tracker tracker_;
+  Tracker tracker_, sweep_tracker_;
   MotionTrack still_;
   DeskewedSweep sweep_;  // of a robot that stands
   FixedVector<Obstacle> found_;

@@ -153,7 +153,12 @@ struct MapSettings {
 
 /// Obstacles followed from list to list.
 struct TrackingSettings {
+  /// What is found in a list is published as it is, and gone when the next one has it no more: only
+  /// its id stays as long.
+  static TrackingSettings for_sweep();
+
   std::string network = "network_track.txt";
+  std::uint32_t least_found = 2;  ///< lists that have a published obstacle
   double smoothing = 0.4;
   double appear = 0.5;
   double disappear = 0.3;

@@ -32,8 +32,6 @@ static_assert(std::size_t{kTrackFeatures} <= Features().size(),
 /// confidence has fallen, soon where its place was seen empty.
 class Tracker {
 public:
-  static constexpr std::uint32_t kLeastFound = 2;  ///< lists that have a published obstacle
-
   struct Track {
     Obstacle obstacle;        ///< as found last
     Features features{};      ///< by TrackFeature
@@ -61,6 +59,9 @@ public:
               FixedVector<Obstacle>& obstacles);
   void set(const TrackingSettings& settings) { settings_ = settings; }
   void clear() { tracks_.clear(); }
+  /// No obstacle has got this id or a larger one yet.
+  std::int64_t next_id() const { return next_id_; }
+  void set_next_id(std::int64_t id) { next_id_ = id; }
 
   /// All that are followed, those not published too; valid until the next update().
   std::span<const Track> tracks() const { return {tracks_.data(), tracks_.size()}; }

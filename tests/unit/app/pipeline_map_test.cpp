@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "allocation_counter.hpp"
 #include "scree/app/pipeline.hpp"
 #include "terrain/rough_ground.hpp"
@@ -54,6 +56,21 @@ protected:
   int sweeps_ = 0;
 };
 
+/// Every edge is an obstacle.
+class PipelineMapOfEdges : public PipelineMap {
+protected:
+  PipelineMapOfEdges() : PipelineMap(all_edges()) {}
+
+  static Settings all_edges() {
+    Settings settings = small_settings();
+    settings.detect_sweep.min_confidence = 0;
+    settings.detect_sweep.edge_threshold = 0.1;
+    settings.detect_sweep.min_block_points = settings.detect_sweep.min_cluster_size = 1;
+    settings.track.appear = settings.track.disappear = 0;
+    return settings;
+  }
+};
+
 TEST_F(PipelineMap, TakesSweepsByThemselvesUntilAMotionSensorSpeaks) {
   const ObstacleList& alone = go(2, false);
   EXPECT_FALSE(pipeline_.uses_map());
@@ -71,6 +88,30 @@ TEST_F(PipelineMap, TakesSweepsByThemselvesUntilAMotionSensorSpeaks) {
   EXPECT_EQ(&pipeline_.ground(), &pipeline_.mapper().map().cloud());
   go(2, false);
   EXPECT_TRUE(pipeline_.uses_map()) << "also when they fall silent";
+}
+
+TEST_F(PipelineMapOfEdges, AnObstacleOfSweepsByThemselvesKeepsItsId) {
+  std::set<std::int64_t> before, all;
+  const auto ids_of = [](const ObstacleList& list) {
+    std::set<std::int64_t> ids;
+    for (const Obstacle& obstacle : list.obstacles) ids.insert(obstacle.id);
+    return ids;
+  };
+  std::size_t stayed = 0, found = 0;
+  for (int i = 0; i < 10; ++i) {
+    const ObstacleList& list = go(1, false);
+    ASSERT_FALSE(list.obstacles.empty());
+    const std::set<std::int64_t> ids = ids_of(list);
+    EXPECT_EQ(ids.size(), list.obstacles.size());
+    for (const std::int64_t id : ids) stayed += before.contains(id) ? 1U : 0U;
+    if (i > 0) found += ids.size();
+    all.insert(ids.begin(), ids.end());
+    before = ids;
+  }
+  EXPECT_GT(stayed, found / 2);
+  const std::set<std::int64_t> ids_in_map = ids_of(go(10));
+  ASSERT_FALSE(ids_in_map.empty());
+  EXPECT_GT(*ids_in_map.begin(), *all.rbegin()) << "what the map has is another obstacle";
 }
 
 // Registration keeps the map as the first attitude laid it; what is published is upright.

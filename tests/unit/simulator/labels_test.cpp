@@ -181,7 +181,7 @@ protected:
     tracks_.push_back(track);
   }
   LabelledClusters label(const std::set<int>& known, double reach = 10) const {
-    return label_tracks(tracks_, reach, base_, kStamp, truth_, known);
+    return label_tracks(tracks_, {.reach = reach}, base_, kStamp, truth_, known);
   }
   std::vector<Label> labels(const std::set<int>& known, double reach = 10) const {
     std::vector<Label> labels;
