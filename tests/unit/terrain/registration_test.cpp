@@ -72,6 +72,22 @@ TEST_F(RegistrationTest, FindsAKnownOffsetOnRoughGround) {
   }
 }
 
+// Ground 0.12 m from where it was: to a pose that is known other things, to one that is not the
+// ground.
+TEST_F(RegistrationTest, TheThresholdFollowsHowWellThePoseIsKnown) {
+  const test::RoughGround flat{.roughness = 0, .level = 0.075};
+  learn(flat);
+  const Pose truth{{0, 0, -0.12}, Eigen::Quaterniond::Identity()};
+  MotionStep step;
+  step.knows_attitude = step.knows_distance = true;
+  filter_.predict(step);
+  EXPECT_EQ(align(flat, truth).key_points, 0);
+  EXPECT_EQ(filter_.pose().translation.z(), 0);
+  be_unsure();
+  EXPECT_GT(align(flat, truth).key_points, 200);
+  EXPECT_NEAR(filter_.pose().translation.z(), -0.12, 0.003);
+}
+
 // A level plane says nothing of x, y and yaw: they stay as predicted, and as unsure.
 TEST_F(RegistrationTest, FlatGroundBindsHeightRollAndPitchOnly) {
   const test::RoughGround flat{.roughness = 0, .level = 0.075};
@@ -102,7 +118,6 @@ TEST_F(RegistrationTest, FlatGroundBindsHeightRollAndPitchOnly) {
   EXPECT_LT(rotation.y(), 0.2);
 }
 
-// Where floats are coarse and the numbers of cells are large.
 // A thirtieth of the points are on its flanks, and they alone bind x: taken evenly they would bind
 // it four times less.
 TEST_F(RegistrationTest, KeyPointsAreChosenByTheirNormals) {
@@ -127,6 +142,7 @@ TEST_F(RegistrationTest, KeyPointsAreChosenByTheirNormals) {
   EXPECT_LT(filter_.position_deviation().x(), 0.012);
 }
 
+// Where floats are coarse and the numbers of cells are large.
 TEST_F(RegistrationTest, WorksManyKilometresFromTheOrigin) {
   const test::RoughGround rough;
   constexpr double kFar = 12'000.3;
