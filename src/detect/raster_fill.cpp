@@ -80,15 +80,17 @@ void RasterFill::relax(const Level& level) {
   constexpr int kSteps = 12;
   for (int step = 0; step < kSteps; ++step) {
     for (std::size_t row = 0; row < level.rows; ++row) {
-      const std::size_t up = row > 0 ? row - 1 : row, down = std::min(row + 1, level.rows - 1);
-      for (std::size_t column = 0; column < level.columns; ++column) {
-        const std::size_t cell = level.at(column, row);
-        if (weights_[cell] > 0) continue;
-        const std::size_t left = column > 0 ? column - 1 : column;
-        const std::size_t right = std::min(column + 1, level.columns - 1);
-        heights_[cell] =
-            0.25F * (heights_[level.at(left, row)] + heights_[level.at(right, row)] +
-                     heights_[level.at(column, up)] + heights_[level.at(column, down)]);
+      float* const here = heights_.data() + level.at(0, row);
+      const float* const weights = weights_.data() + level.at(0, row);
+      const float* const up = row > 0 ? here - level.columns : here;
+      const float* const down = row + 1 < level.rows ? here + level.columns : here;
+      const std::size_t last = level.columns - 1;
+      for (std::size_t i = 0; i <= last; ++i) {
+        if (weights[i] > 0) continue;
+        // The left one comes last: it has just been written, and the sum of the others need not
+        // wait for it.
+        here[i] =
+            0.25F * (here[i > 0 ? i - 1 : i] + (here[i < last ? i + 1 : i] + (up[i] + down[i])));
       }
     }
   }
