@@ -109,7 +109,7 @@ def can_socket(interface):
 
 class Player:
     """Plays the files of a capture to ports of this computer, in real time and in time with one
-    another; again and again with loop."""
+    another; again and again with loop. `later_ns` is how much later than recorded."""
 
     def __init__(self, capture, port, position_port, mti, can=None, loop=False):
         self.udp = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -140,6 +140,7 @@ class Player:
     def _play(self):
         while True:
             start, first = time.monotonic(), self.events[0][0]
+            self.later_ns = time.time_ns() - first
             for stamp, send in self.events:
                 early = start + (stamp - first) * 1e-9 - time.monotonic()
                 if early > 0:
