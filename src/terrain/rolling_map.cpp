@@ -15,16 +15,6 @@ constexpr float kSeenThrough = 4;
 /// Beams that went through a voxel since it was hit last: it has moved away.
 constexpr std::uint16_t kMostPassed = 8;
 
-/// Both fade before one of them overflows.
-void count(BeamCount& beams, int ended, int passed) {
-  constexpr std::uint16_t kMost = 60'000;
-  beams.ended = static_cast<std::uint16_t>(beams.ended + ended);
-  beams.passed = static_cast<std::uint16_t>(beams.passed + passed);
-  if (std::max(beams.ended, beams.passed) < kMost) return;
-  beams.ended /= 2;
-  beams.passed /= 2;
-}
-
 }  // namespace
 
 RollingMap::RollingMap(const MapSettings& settings)
@@ -132,6 +122,7 @@ void RollingMap::add(const DeskewedSweep& sweep, const Pose& pose, std::int64_t 
   ++sweep_;
   end_ns_ = end_ns;
   recentre(pose);
+  fade_beams();
   const Eigen::Matrix3f rotation = pose.rotation.toRotationMatrix().cast<float>();
   const Eigen::Vector3f translation = (pose.translation - origin_).cast<float>();
   const auto reach = static_cast<float>(settings_.reach);
@@ -153,7 +144,7 @@ void RollingMap::add(const DeskewedSweep& sweep, const Pose& pose, std::int64_t 
     voxel->last_sweep = sweep_;
     voxel->seen_ns = end_ns;
     voxel->passed = 0;
-    count(voxel->beams, 1, 0);
+    ++voxel->beams.ended;
   }
   see_through(sweep, rotation, translation);
   forget(pose);
@@ -196,7 +187,7 @@ void RollingMap::see_through(const DeskewedSweep& sweep, const Eigen::Matrix3f& 
       const Eigen::Vector3f off = voxel.mean - from;
       const Eigen::Vector3f aside = off - off.dot(along) * along;  // from the beam to the mean
       const float distance = aside.norm();
-      if (distance < through && aside.z() > 0) count(voxel.beams, 0, 2 * kEvery);
+      if (distance < through && aside.z() > 0) voxel.beams.passed += 2 * kEvery;
       if (distance < near && way < end && voxel.last_sweep != sweep_) ++voxel.passed;
     }
   }
@@ -214,6 +205,18 @@ Sight RollingMap::sight(const Eigen::Vector3d& place) const {
   constexpr std::uint32_t kRecent = 20;  // sweeps
   const std::uint32_t passed = free_space_.last_passed(place.cast<float>());
   return passed != 0 && sweep_ - passed < kRecent ? Sight::empty : Sight::unseen;
+}
+
+/// How many beams came to a thing must not tell how long the robot has been near it.
+void RollingMap::fade_beams() {
+  constexpr std::int64_t kEveryNs = 10'000'000'000;
+  constexpr float kKept = 0.84F;  // a half in 40 s
+  if (std::abs(end_ns_ - faded_ns_) < kEveryNs) return;
+  faded_ns_ = end_ns_;
+  for (Voxel& voxel : voxels_) {
+    voxel.beams.ended *= kKept;
+    voxel.beams.passed *= kKept;
+  }
 }
 
 void RollingMap::forget(const Pose& pose) {

@@ -73,6 +73,7 @@ private:
   Voxel* find_or_add(const Key& key);
   void remove(std::size_t index);
   void recentre(const Pose& pose);
+  void fade_beams();
   void forget(const Pose& pose);
   void see_through(const DeskewedSweep& sweep, const Eigen::Matrix3f& rotation,
                    const Eigen::Vector3f& translation);
@@ -89,7 +90,7 @@ private:
   PointCloud cloud_;
   FixedVector<BeamCount> beams_;
   std::uint32_t sweep_ = 0;
-  std::int64_t end_ns_ = 0;
+  std::int64_t end_ns_ = 0, faded_ns_ = 0;
   std::uint64_t dropped_ = 0;
 };
 

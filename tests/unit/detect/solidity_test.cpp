@@ -25,8 +25,8 @@ protected:
       float z = std::hypot(x, y) < 0.5F ? 0.3F : 0.0F;
       if (x > 1.5F && y > 1.5F) z = 2.5F;
       cloud_.push_back(x, y, z, 0);
-      beams_.push_back(
-          {static_cast<std::uint16_t>(count(random)), static_cast<std::uint16_t>(count(random))});
+      const int ended = count(random), passed = count(random);
+      beams_.push_back({static_cast<float>(ended), static_cast<float>(passed)});
     }
     surface_.build(cloud_, {.cell_size = kCell,
                             .cell_points = 1,
