@@ -152,8 +152,8 @@ public:
       if (i % kEvery != 0) continue;
       const Truth truth{
           feed.truth().obstacles, {{sweep.end_ns, drive.motion.base(sweep.end_ns)}}, {}};
-      all += label_tracks(pipeline.tracker().tracks(), settings.track,
-                          pipeline.mapper().pose(), sweep.end_ns, truth, known);
+      all += label_tracks(pipeline.tracker().tracks(), settings.track, pipeline.mapper().pose(),
+                          sweep.end_ns, truth, known);
     }
     return all;
   }
