@@ -55,7 +55,7 @@ void Tracker::update(std::int64_t stamp_ns, const Eigen::Vector3d& robot,
             : seen == Sight::unseen ? 0
                                     : share);
       // From the future, too, when the clock was set back.
-      if (std::abs(stamp_ns - track.found_ns) > remembered_ns) continue;
+      if (std::abs(stamp_ns - track.found_ns) >= remembered_ns) continue;
     }
     if (track.smoothed() < 0.02F) continue;
     tracks_[kept++] = track;

@@ -253,6 +253,26 @@ TEST_F(TrackerTest, AnObstacleOfWhichAPartIsNearEnoughIsPublished) {
   EXPECT_EQ(update({ditch}).size(), 0U);
 }
 
+// Also when the stamps of two lists are the same.
+TEST_F(TrackerTest, OfSweepsWhatIsFoundIsPublishedAtOnceAndGoneWithTheNextList) {
+  tracker_ = Tracker(TrackingSettings::for_sweep(), kMost);
+  sight_ = Sight::unseen;
+  const auto list_of = [&](const std::vector<Obstacle>& found) {
+    now_ns_ = kStart;
+    update(found);
+    std::set<std::int64_t> ids;
+    for (const Obstacle& obstacle : list_) ids.insert(obstacle.id);
+    return ids;
+  };
+  const std::set<std::int64_t> first = list_of({at(3, 1, 0.7F), hole_at(6, 1, 0.7F)});
+  EXPECT_EQ(first.size(), 2U);
+  EXPECT_EQ(list_of({at(3.1, 1, 0.7F), hole_at(6.1, 1, 0.7F)}), first);
+  EXPECT_FLOAT_EQ(list_[0].confidence, 0.7F);
+  EXPECT_EQ(list_of({at(3.2, 1, 0.7F)}).size(), 1U);
+  EXPECT_EQ(list_of({}).size(), 0U);
+  EXPECT_FALSE(first.contains(*list_of({at(3.2, 1, 0.7F)}).begin())) << "it was gone";
+}
+
 // Were the time of the last finding ahead for hours, what is unseen would stay so long.
 TEST_F(TrackerTest, GoesOnWhenTheClockIsSet) {
   for (const std::int64_t shift : {-36'000 * kList, 36'000 * kList}) {
