@@ -1,6 +1,5 @@
 """A screed with all its sensors: what the tests of it as it runs share."""
 
-import os
 import threading
 import time
 
@@ -39,20 +38,9 @@ class LiveDaemonTest(ProgramTest):
     def simulate(self):
         """A capture, and a configuration for its sensors on this computer."""
         capture = self.path("capture")
-        done = self.run_to_end(self.scree, "simulate", capture, "--seconds", "6", "--scene", "easy")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        with open(os.path.join(capture, "scree.toml")) as file:
-            robot = file.read()
+        self.done(self.scree, "simulate", capture, "--seconds", "6", "--scene", "easy")
         self.mti = EmulatedMti(self.path("imu"))
-        for default, here in [
-            ("port = 2368", f'port = {self.port}\naddress = "127.0.0.1"'),
-            ("position_port = 8308", f"position_port = {self.position_port}"),
-            ("/dev/ttyUSB0", self.mti.port),
-            ('"can0"', '"vcan0"'),
-        ]:
-            self.assertIn(default, robot)
-            robot = robot.replace(default, here)
-        self.config = self.write("robot.toml", f'{robot}[lcm]\nurl = "{self.url}"\n')
+        self.config = self.write_config_here(capture, self.mti.port)
         return capture
 
     def start_daemon(self):

@@ -19,9 +19,7 @@ class PackageTest(ProgramTest):
         (self.package,) = glob.glob(self.path("made/*.deb"))
 
     def done(self, *command, **options):
-        result = self.run_to_end(*command, **options)
-        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
-        return result.stdout
+        return super().done(*command, **options).stdout
 
     def unpack(self):
         self.done("dpkg-deb", "-x", self.package, self.path("root"))

@@ -50,6 +50,26 @@ class ProgramTest(unittest.TestCase):
     def run_to_end(self, *arguments, **options):
         return subprocess.run(arguments, capture_output=True, text=True, timeout=PATIENCE, **options)
 
+    def done(self, *arguments, **options):
+        """What a program gave that ended well."""
+        result = self.run_to_end(*arguments, **options)
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        return result
+
+    def write_config_here(self, capture, imu):
+        """The configuration of a simulated capture's robot, with its sensors on this computer."""
+        with open(os.path.join(capture, "scree.toml")) as file:
+            robot = file.read()
+        for default, here in [
+            ("port = 2368", f'port = {self.port}\naddress = "127.0.0.1"'),
+            ("position_port = 8308", f"position_port = {self.position_port}"),
+            ("/dev/ttyUSB0", imu),
+            ('"can0"', '"vcan0"'),
+        ]:
+            self.assertIn(default, robot)
+            robot = robot.replace(default, here)
+        return self.write("robot.toml", f'{robot}[lcm]\nurl = "{self.url}"\n')
+
     def read_until(self, stream, words):
         for line in stream:
             if words in line:

@@ -20,22 +20,7 @@ class ReplayTest(ProgramTest):
 
     def simulate(self, seconds):
         self.done(SCREE, "simulate", self.capture, "--seconds", str(seconds), "--scene", "easy")
-        with open(os.path.join(self.capture, "scree.toml")) as file:
-            robot = file.read()
-        for default, here in [
-            ("port = 2368", f'port = {self.port}\naddress = "127.0.0.1"'),
-            ("position_port = 8308", f"position_port = {self.position_port}"),
-            ("/dev/ttyUSB0", self.imu),
-            ('"can0"', '"vcan0"'),
-        ]:
-            self.assertIn(default, robot)
-            robot = robot.replace(default, here)
-        self.config = self.write("robot.toml", f'{robot}[lcm]\nurl = "{self.url}"\n')
-
-    def done(self, *command):
-        result = self.run_to_end(*command)
-        self.assertEqual(result.returncode, 0, result.stderr)
-        return result
+        self.config = self.write_config_here(self.capture, self.imu)
 
     def replay(self, *arguments):
         return [SCREE, "replay", self.capture, "--address", f"127.0.0.1:{self.port}",

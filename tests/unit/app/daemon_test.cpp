@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <thread>
@@ -81,6 +82,7 @@ protected:
     while (is_stuck_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     found_.stamp_ns = sweep.end_ns;
     sweep_age_ns_ = nanoseconds_of<Clock>() - sweep.end_ns;
+    oldest_sweep_ns_ = std::max(oldest_sweep_ns_.load(), sweep_age_ns_.load());
     found_.obstacles.clear();
     Obstacle rock;
     rock.center.x() = rock_x_;
@@ -102,7 +104,7 @@ protected:
   Settings settings_;
   std::optional<Listener> listener_;
   std::atomic<bool> is_stuck_ = false, looks_ = true;
-  std::atomic<std::int64_t> sweep_age_ns_ = 0;
+  std::atomic<std::int64_t> sweep_age_ns_ = 0, oldest_sweep_ns_ = 0;
   std::atomic<double> rock_x_ = 100;
   RobotLines lines_;
   ObstacleList found_{1};
@@ -184,6 +186,7 @@ TEST_F(DaemonTest, ASweepWaitsForMotionOnlySoLongAndSaysThatItWentOnWithoutIt) {
   });
   ASSERT_TRUE(listener_->until(
       [&] { return listener_->health.sweeps_not_covered > 0 && listener_->lists > 2; }));
+  EXPECT_GE(oldest_sweep_ns_, static_cast<std::int64_t>(settings_.map.wait * 1e9));
 }
 
 TEST_F(DaemonTest, NothingIsPublishedWhileNothingIsLookedAt) {
