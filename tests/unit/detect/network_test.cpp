@@ -4,8 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 #include <limits>
+
+#include "unit/temporary_folder.hpp"
 
 namespace scree {
 namespace {
@@ -66,7 +67,8 @@ TEST(Network, ForwardPassAgreesWithTheFormulasWrittenOut) {
 
 TEST(Network, SaveAndLoadGiveTheSameNetworkExactly) {
   const Network network = random_network(17);
-  const auto file = std::filesystem::path(testing::TempDir()) / "scree_network_test.txt";
+  const TemporaryFolder folder;
+  const auto file = folder / "network.txt";
   ASSERT_TRUE(network.save(file, "seeds 1-3\n\nhidden 17"));
   const auto loaded = Network::load(file);
   ASSERT_TRUE(loaded) << loaded.error().message;
@@ -76,7 +78,6 @@ TEST(Network, SaveAndLoadGiveTheSameNetworkExactly) {
   EXPECT_EQ(loaded->forms, network.forms);
   EXPECT_THAT(network.to_text("seeds 1-3\n\nhidden 17"),
               HasSubstr("# seeds 1-3\n#\n# hidden 17\n"));
-  std::filesystem::remove(file);
 }
 
 TEST(Network, RefusalsNameFileLineAndReason) {

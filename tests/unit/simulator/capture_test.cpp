@@ -9,37 +9,18 @@
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "scree/capture/pcap_reader.hpp"
 #include "scree/capture/pcd.hpp"
 #include "scree/config/settings.hpp"
 #include "scree/drivers/velodyne/data_packet.hpp"
 #include "simulator/robot.hpp"
+#include "unit/temporary_folder.hpp"
 
 namespace scree {
 namespace {
 
 namespace fs = std::filesystem;
-
-class Folder {
-public:
-  explicit Folder(const std::string& name) : path(fs::path(testing::TempDir()) / name) {
-    fs::remove_all(path);
-    fs::create_directories(path);
-  }
-  ~Folder() { fs::remove_all(path); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-
-  fs::path path;
-};
-
-std::string bytes_of(const fs::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
-}
 
 /// A short drive over a coarse terrain.
 CaptureSettings quick() {
@@ -52,15 +33,16 @@ CaptureSettings quick() {
 }
 
 TEST(Capture, HoldsWhatTheContractSays) {
-  const Folder folder("scree_capture_test");
+  const TemporaryFolder folder;
   CaptureSettings settings = quick();
   settings.faults.packet_loss = 0;
   std::size_t last = 0;
-  const auto written = write_capture(folder.path, settings, [&](std::size_t done) { last = done; });
+  const auto written =
+      write_capture(folder.path(), settings, [&](std::size_t done) { last = done; });
   ASSERT_TRUE(written) << written.error().message;
   EXPECT_EQ(last, 1000U);
 
-  const auto loaded = load_settings(folder.path / "scree.toml");
+  const auto loaded = load_settings(folder / "scree.toml");
   ASSERT_TRUE(loaded) << loaded.error().message;
   const Robot robot = draw_robot(settings.seed);
   EXPECT_TRUE(loaded->lidar.translation.isApprox(robot.lidar.translation, 1e-9));
@@ -69,7 +51,7 @@ TEST(Capture, HoldsWhatTheContractSays) {
   EXPECT_EQ(loaded->encoder.byte_order, robot.encoder.byte_order);
   EXPECT_EQ(loaded->encoder.scale, robot.encoder.scale);
 
-  auto reader = PcapReader::open(folder.path / "lidar.pcap");
+  auto reader = PcapReader::open(folder / "lidar.pcap");
   ASSERT_TRUE(reader) << reader.error().message;
   const velodyne::PacketDecoder decoder(loaded->lidar.model);
   const auto shots = std::make_unique<velodyne::Shots>();
@@ -96,18 +78,18 @@ TEST(Capture, HoldsWhatTheContractSays) {
   EXPECT_LT(data, 305);
   EXPECT_GE(positions, data / 6);
   EXPECT_GT(returns, 20'000);
-  EXPECT_GT(bytes_of(folder.path / "imu.pcap").size(), 40U * 70U);
-  EXPECT_NE(bytes_of(folder.path / "can.log").find(fmt::format("{:03X}#", robot.encoder.can_id)),
+  EXPECT_GT(bytes_of(folder / "imu.pcap").size(), 40U * 70U);
+  EXPECT_NE(bytes_of(folder / "can.log").find(fmt::format("{:03X}#", robot.encoder.can_id)),
             std::string::npos);
 }
 
 TEST(Capture, TruthKnowsPosesAndWhatIsVisible) {
-  const Folder folder("scree_capture_truth");
+  const TemporaryFolder folder;
   CaptureSettings settings = quick();
   settings.seconds = 1.5;
   settings.rate_hz = 5;
-  ASSERT_TRUE(write_capture(folder.path, settings, [](std::size_t) {}));
-  const auto truth = nlohmann::json::parse(bytes_of(folder.path / "truth.json"));
+  ASSERT_TRUE(write_capture(folder.path(), settings, [](std::size_t) {}));
+  const auto truth = nlohmann::json::parse(bytes_of(folder / "truth.json"));
   EXPECT_GE(truth["obstacles"].size(), 5U);
   ASSERT_EQ(truth["visible"].size(), 8U);
   const auto t_of = [](const nlohmann::json& entry) { return entry["t_ns"].get<std::int64_t>(); };
@@ -123,27 +105,27 @@ TEST(Capture, TruthKnowsPosesAndWhatIsVisible) {
 }
 
 TEST(Capture, AtRestTheRobotStandsLevelAtTheOrigin) {
-  const Folder folder("scree_capture_rest");
+  const TemporaryFolder folder;
   CaptureSettings settings = quick();
   settings.at_rest = true;
-  ASSERT_TRUE(write_capture(folder.path, settings, [](std::size_t) {}));
-  const auto truth = nlohmann::json::parse(bytes_of(folder.path / "truth.json"));
+  ASSERT_TRUE(write_capture(folder.path(), settings, [](std::size_t) {}));
+  const auto truth = nlohmann::json::parse(bytes_of(folder / "truth.json"));
   EXPECT_EQ(truth["poses"].back()["q"], nlohmann::json({1.0, 0.0, 0.0, 0.0}));
   EXPECT_EQ(truth["visible"].size(), 4U);
 }
 
 TEST(Capture, SameSeedSameBytes) {
-  const Folder a("scree_capture_a");
-  const Folder b("scree_capture_b");
+  const TemporaryFolder a;
+  const TemporaryFolder b;
   CaptureSettings settings = quick();
   settings.seconds = 0.1;
   settings.dual = true;
   settings.seed = 7;
-  for (const Folder* folder : {&a, &b}) {
-    ASSERT_TRUE(write_capture(folder->path, settings, [](std::size_t) {}));
+  for (const TemporaryFolder* folder : {&a, &b}) {
+    ASSERT_TRUE(write_capture(folder->path(), settings, [](std::size_t) {}));
   }
   for (const char* file : {"lidar.pcap", "imu.pcap", "can.log", "truth.json", "scree.toml"}) {
-    EXPECT_EQ(bytes_of(a.path / file), bytes_of(b.path / file)) << file;
+    EXPECT_EQ(bytes_of(a / file), bytes_of(b / file)) << file;
   }
 }
 
@@ -161,12 +143,12 @@ std::vector<std::int64_t> frames_of(const fs::path& file, std::int64_t can_id) {
 }
 
 TEST(Capture, GapsAreWhereTheyWereAskedFor) {
-  const Folder folder("scree_capture_gaps");
+  const TemporaryFolder folder;
   CaptureSettings settings = quick();
   settings.seconds = 1;
   settings.faults.imu_gap = {0.2, 0.3};
   settings.faults.encoder_gap = {0.6, 0.25};
-  ASSERT_TRUE(write_capture(folder.path, settings, [](std::size_t) {}));
+  ASSERT_TRUE(write_capture(folder.path(), settings, [](std::size_t) {}));
   const auto longest_pause = [](const std::vector<std::int64_t>& times, double start) {
     std::size_t longest = 1;
     for (std::size_t i = 2; i < times.size(); ++i) {
@@ -177,13 +159,13 @@ TEST(Capture, GapsAreWhereTheyWereAskedFor) {
     return static_cast<double>(times[longest] - times[longest - 1]) * 1e-9;
   };
   std::vector<std::int64_t> reads;
-  auto reader = PcapReader::open(folder.path / "imu.pcap");
+  auto reader = PcapReader::open(folder / "imu.pcap");
   ASSERT_TRUE(reader) << reader.error().message;
   for (PcapRecord record; reader->next(record);) reads.push_back(record.arrival_ns);
   EXPECT_NEAR(longest_pause(reads, 0.2), 0.3, 0.02);
 
   const Robot robot = draw_robot(settings.seed);
-  const auto frames = frames_of(folder.path / "can.log", robot.encoder.can_id);
+  const auto frames = frames_of(folder / "can.log", robot.encoder.can_id);
   EXPECT_NEAR(longest_pause(frames, 0.6), 0.25, 0.02);
 }
 
@@ -194,14 +176,14 @@ TEST(Capture, UnwritableFolderIsOneSentence) {
 }
 
 TEST(Cloud, IsWrittenWithItsTruth) {
-  const Folder folder("scree_cloud_test");
+  const TemporaryFolder folder;
   CloudSettings settings;
   settings.points = 20'000;
-  ASSERT_TRUE(write_cloud(folder.path / "c.pcd", settings, 3));
-  const auto cloud = read_pcd(folder.path / "c.pcd");
+  ASSERT_TRUE(write_cloud(folder / "c.pcd", settings, 3));
+  const auto cloud = read_pcd(folder / "c.pcd");
   ASSERT_TRUE(cloud) << cloud.error().message;
   EXPECT_EQ(cloud->size(), 20'000U);
-  const auto truth = nlohmann::json::parse(bytes_of(folder.path / "c.truth.json"));
+  const auto truth = nlohmann::json::parse(bytes_of(folder / "c.truth.json"));
   EXPECT_EQ(truth["visible"][0]["ids"].size(), truth["obstacles"].size());
   EXPECT_EQ(truth["obstacles"].size(), 18U);
 }

@@ -7,6 +7,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "unit/temporary_folder.hpp"
+
 namespace scree {
 namespace {
 
@@ -39,7 +41,8 @@ std::vector<Record> records(const fs::path& file) {
 class Serial : public testing::TestWithParam<std::int64_t> {};
 
 TEST_P(Serial, KeepsAllBytesInOrderWhateverTheReads) {
-  const fs::path file = fs::path(testing::TempDir()) / "scree_serial_test.pcap";
+  const TemporaryFolder folder;
+  const fs::path file = folder / "imu.pcap";
   auto pcap = PcapWriter::create_serial(file);
   ASSERT_TRUE(pcap);
   SerialPort port(*pcap, 921600, GetParam(), 1);
@@ -74,14 +77,14 @@ TEST_P(Serial, KeepsAllBytesInOrderWhateverTheReads) {
   } else {
     EXPECT_GT(joined, 20);
   }
-  fs::remove(file);
 }
 
 INSTANTIATE_TEST_SUITE_P(Reads, Serial, testing::Values(0, 16'000'000),
                          [](const auto& which) { return which.param == 0 ? "Soon" : "InBursts"; });
 
 TEST(SerialPort, CorruptsTheShareThatItIsAskedFor) {
-  const fs::path file = fs::path(testing::TempDir()) / "scree_corrupt_test.pcap";
+  const TemporaryFolder folder;
+  const fs::path file = folder / "imu.pcap";
   auto pcap = PcapWriter::create_serial(file);
   ASSERT_TRUE(pcap);
   SerialPort port(*pcap, 921600, 0, 1);
@@ -119,11 +122,11 @@ TEST(SerialPort, CorruptsTheShareThatItIsAskedFor) {
     ++next;
   }
   for (const int count : {flipped, lost, inserted}) EXPECT_NEAR(count, kBytes * kShare / 3, 50);
-  fs::remove(file);
 }
 
 TEST(CanBus, LosesTheEncodersFramesButNotThoseOfOthers) {
-  const fs::path file = fs::path(testing::TempDir()) / "scree_can_gap_test.log";
+  const TemporaryFolder folder;
+  const fs::path file = folder / "can.log";
   EncoderSettings layout;
   layout.can_id = 0x123;
   const Motion motion{Pose()};
@@ -145,11 +148,11 @@ TEST(CanBus, LosesTheEncodersFramesButNotThoseOfOthers) {
   }
   EXPECT_EQ(encoders, 200);
   EXPECT_GT(others_late, 5);
-  fs::remove(file);
 }
 
 TEST(CanBus, LogsAsCandumpDoes) {
-  const fs::path file = fs::path(testing::TempDir()) / "scree_can_test.log";
+  const TemporaryFolder folder;
+  const fs::path file = folder / "can.log";
   EncoderSettings layout;
   layout.can_id = 0x18FF50E5;
   const Motion motion{Pose()};
@@ -175,7 +178,6 @@ TEST(CanBus, LogsAsCandumpDoes) {
   }
   EXPECT_EQ(encoders, 101);
   EXPECT_GT(all, encoders);
-  fs::remove(file);
 }
 
 }  // namespace
