@@ -40,7 +40,7 @@ class Drawing {
 public:
   Drawing(const ShapeWeights& weights, Random random) : weights_(weights), random_(random) {}
 
-  Group rock() { return one(ShapeKind::boulder, ShapeKind::ledge); }
+  Group rock() { return one(ShapeKind::boulder, ShapeKind::pillar); }
   Group hole() { return one(ShapeKind::bowl, ShapeKind::ditch); }
   Group smooth() { return one(ShapeKind::mound, ShapeKind::hollow); }
 

@@ -25,7 +25,8 @@ struct Recipe {
 
 constexpr Range kNone = {0, 0};
 
-//                                 boulder block peak bump log ledge | bowl pit pothole crater ditch
+//                                 boulder block peak bump log ledge pillar | bowl pit pothole
+//                                 crater ditch
 constexpr std::array<Recipe, kScenes.size()> kRecipes = {{
     {"easy",
      {0.5, 4},
@@ -38,7 +39,7 @@ constexpr std::array<Recipe, kScenes.size()> kRecipes = {{
      {0, 0.15},
      {0, 0.05},
      kNone,
-     {4, 2, 2, 1, 1, 1, 1, 2, 2, 1, 1, 1, 1}},
+     {4, 2, 2, 1, 1, 1, 2, 1, 2, 2, 1, 1, 1, 1}},
     {"rolling",
      {5, 15},
      0.012,
@@ -50,7 +51,7 @@ constexpr std::array<Recipe, kScenes.size()> kRecipes = {{
      {0, 0.2},
      {0, 0.1},
      {0, 0.25},
-     {3, 2, 2, 2, 1, 1, 2, 2, 2, 2, 1, 1, 1}},
+     {3, 2, 2, 2, 1, 1, 1, 2, 2, 2, 2, 1, 1, 1}},
     {"rough",
      {3, 10},
      0.02,
@@ -62,7 +63,7 @@ constexpr std::array<Recipe, kScenes.size()> kRecipes = {{
      {0, 0.2},
      {0, 0.1},
      {0, 0.1},
-     {3, 3, 2, 2, 1, 1, 2, 2, 2, 2, 1, 1, 1}},
+     {3, 3, 2, 2, 1, 1, 1, 2, 2, 2, 2, 1, 1, 1}},
     {"crater",
      {2, 9},
      0.012,
@@ -74,7 +75,7 @@ constexpr std::array<Recipe, kScenes.size()> kRecipes = {{
      {0, 0.1},
      {0, 0.15},
      {0.1, 0.4},
-     {3, 2, 2, 1, 1, 1, 2, 2, 3, 5, 0, 1, 3}},
+     {3, 2, 2, 1, 1, 1, 1, 2, 2, 3, 5, 0, 1, 3}},
     {"ditch",
      {1, 8},
      0.012,
@@ -86,7 +87,7 @@ constexpr std::array<Recipe, kScenes.size()> kRecipes = {{
      {0, 0.1},
      {0, 0.1},
      {0, 0.1},
-     {2, 1, 1, 1, 3, 4, 1, 1, 1, 1, 6, 1, 1}},
+     {2, 1, 1, 1, 3, 4, 1, 1, 1, 1, 1, 6, 1, 1}},
     {"grass",
      {1, 8},
      0.015,
@@ -98,7 +99,7 @@ constexpr std::array<Recipe, kScenes.size()> kRecipes = {{
      {0, 0.15},
      {0, 0.1},
      {0, 0.15},
-     {3, 2, 2, 2, 2, 1, 1, 2, 2, 2, 2, 1, 1}},
+     {3, 2, 2, 2, 2, 1, 2, 1, 2, 2, 2, 2, 1, 1}},
     {"mixed",
      {1, 13},
      0.015,
@@ -110,7 +111,7 @@ constexpr std::array<Recipe, kScenes.size()> kRecipes = {{
      {0, 0.25},
      {0, 0.15},
      {0, 0.25},
-     {3, 2, 2, 2, 2, 2, 2, 2, 2, 3, 2, 1, 1}},
+     {3, 2, 2, 2, 2, 2, 2, 2, 2, 2, 3, 2, 1, 1}},
 }};
 
 const Recipe& recipe_of(Scene scene) {
@@ -161,6 +162,7 @@ TerrainSettings cloud_terrain(Scene scene, std::uint64_t seed) {
   constexpr double kSparser = 0.5;  // a place that was worth mapping whole is less crowded
   TerrainSettings settings = scene_terrain(scene, kSparser * edge * edge, seed);
   settings.tuft_light = 0;  // there the light is lost that would tell
+  settings.weights[static_cast<std::size_t>(ShapeKind::pillar)] = 0;  // as in the paper's fields
   return settings;
 }
 

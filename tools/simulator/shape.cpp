@@ -28,8 +28,8 @@ double spread(ShapeKind kind) {
 
 std::string_view name_of(ShapeKind kind) {
   constexpr std::array<std::string_view, kShapeKinds> kNamesOfShapes = {
-      "boulder", "block",   "peak",   "bump",  "log",   "ledge", "bowl",
-      "pit",     "pothole", "crater", "ditch", "mound", "hollow"};
+      "boulder", "block", "peak",    "bump",   "log",   "ledge", "pillar",
+      "bowl",    "pit",   "pothole", "crater", "ditch", "mound", "hollow"};
   return kNamesOfShapes[static_cast<std::size_t>(kind)];
 }
 
@@ -60,6 +60,7 @@ double Shape::profile(double radius, const Eigen::Vector2d& own) const {
     case ShapeKind::boulder:
       return std::pow(std::max(1 - r * r * r, 0.0), sharpness_);
     case ShapeKind::block:
+    case ShapeKind::pillar:
       return (1 - smooth_step(1 - sharpness_, 1, r)) * (1 + detail_ * own.x() / semi_axes_.x()) /
              (1 + detail_);
     case ShapeKind::peak:

@@ -19,6 +19,7 @@ enum class ShapeKind : std::uint8_t {
   bump,     ///< round above and below, yet steeper than 30 degrees
   log,      ///< lying half cylinder
   ledge,    ///< long step, steep on one side or on both
+  pillar,   ///< upright on all sides: a post, a trunk, a crate, a wall
   bowl,     ///< parabola
   pit,      ///< flat floor, walls
   pothole,  ///< small bowl with steep sides
@@ -27,11 +28,11 @@ enum class ShapeKind : std::uint8_t {
   mound,    ///< no obstacle: smooth
   hollow    ///< no obstacle: smooth
 };
-inline constexpr std::size_t kShapeKinds = 13;
+inline constexpr std::size_t kShapeKinds = 14;
 std::string_view name_of(ShapeKind kind);
 
 constexpr bool is_positive(ShapeKind kind) {
-  return kind <= ShapeKind::ledge;
+  return kind <= ShapeKind::pillar;
 }
 constexpr bool is_negative(ShapeKind kind) {
   return kind >= ShapeKind::bowl && kind <= ShapeKind::ditch;
@@ -50,7 +51,8 @@ struct SizeRange {
 class Shape {
 public:
   /// Draws size, proportions and outline for this kind: rocks 0.15-1.2 m high (logs and ledges up
-  /// to 0.5 m), holes 0.2-1.0 m deep, mounds and hollows at most 8-19 degrees steep.
+  /// to 0.5 m, pillars 0.3-1.6 m), holes 0.2-1.0 m deep, mounds and hollows at most 8-19 degrees
+  /// steep.
   /// @param size instead of the kind's own range
   static Shape draw(ShapeKind kind, Random& random, std::optional<SizeRange> size = std::nullopt);
 
@@ -86,10 +88,11 @@ private:
   Eigen::Vector2d semi_axes_{1, 1};  ///< half length, half width, metres
   double cos_yaw_ = 1, sin_yaw_ = 0;
   double irregularity_ = 0.2;
-  double sharpness_ = 1;  ///< of the flanks; its meaning depends on the kind
-  double detail_ = 0;     ///< tilt of a block, rim of a crater, 1: ledge with a ramp on one side
-  double bend_ = 0;       ///< of the middle line of a long shape, 1/metres
-  double end_ = 0.05;     ///< length over which a long shape ends, metres
+  bool is_square_ = false;  ///< seen from above, else round
+  double sharpness_ = 1;    ///< of the flanks; its meaning depends on the kind
+  double detail_ = 0;       ///< tilt of a block, rim of a crater, 1: ledge with a ramp on one side
+  double bend_ = 0;         ///< of the middle line of a long shape, 1/metres
+  double end_ = 0.05;       ///< length over which a long shape ends, metres
   double reach_ = 0;
   std::array<double, kDirections> outline_{};
 };

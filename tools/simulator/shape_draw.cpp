@@ -12,6 +12,15 @@ namespace {
 constexpr double kLongestEnd = 0.6;
 constexpr double kLongestRock = 1.3;  ///< half of it, metres
 constexpr double kWidestHole = 1.3;   ///< half of it, metres
+constexpr double kUpright = 0.03;     ///< width of a pillar's flank, metres
+
+/// Distance from the middle of a square of half width 1 to its edge; its corners are a little worn.
+double rounded_square(double angle) {
+  constexpr double kPower = 6;
+  return std::pow(
+      std::pow(std::abs(std::cos(angle)), kPower) + std::pow(std::abs(std::sin(angle)), kPower),
+      -1 / kPower);
+}
 
 }  // namespace
 
@@ -49,6 +58,8 @@ Shape Shape::draw(ShapeKind kind, Random& random, std::optional<SizeRange> size)
 void Shape::draw_size(Random& random, std::optional<SizeRange> size) {
   if (size) {
     size_ = random.uniform(size->low, size->high);
+  } else if (kind_ == ShapeKind::pillar) {
+    size_ = random.uniform(0.3, 1.6);
   } else if (is_positive(kind_) && is_long(kind_)) {
     size_ = random.uniform(0.15, 0.5);
   } else if (is_positive(kind_)) {
@@ -91,6 +102,15 @@ void Shape::draw_rock(Random& random) {
       bend_ = random.uniform(-0.1, 0.1);
       end_ = random.uniform(0.04, 0.3);
       break;
+    case ShapeKind::pillar: {
+      const bool is_thin = random.chance(0.7);
+      is_square_ = !is_thin || random.chance(0.4);
+      width = is_thin ? random.uniform(0.05, 0.2) : std::min(size_, 1.0) * random.uniform(0.3, 0.7);
+      length = is_thin && is_square_ ? random.uniform(0.4, 1.5) : width * random.uniform(1.0, 1.5);
+      irregularity_ = 0.05;
+      sharpness_ = std::min(kUpright / width, 1.0);
+      break;
+    }
     default:
       sharpness_ = random.uniform(0.35, 0.6);
   }
@@ -154,6 +174,7 @@ void Shape::draw_outline(Random& random) {
       outline_[i] +=
           irregularity_ * waves[k].amplitude / total * std::cos(turns * angle + waves[k].phase);
     }
+    if (is_square_) outline_[i] *= rounded_square(angle);
   }
 }
 

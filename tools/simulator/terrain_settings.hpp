@@ -10,7 +10,7 @@ namespace scree {
 
 /// How often each kind of shape is drawn among its like (rocks, holes, smooth ones).
 using ShapeWeights = std::array<double, kShapeKinds>;
-inline constexpr ShapeWeights kAllShapes = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
+inline constexpr ShapeWeights kRocksAndHoles = {1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1};
 
 /// How a terrain is drawn. Lengths in metres.
 struct TerrainSettings {
@@ -29,7 +29,7 @@ struct TerrainSettings {
   int pairs = 1;             ///< of the rocks: two 0.3-0.6 m apart
   int neighbours = 0;        ///< of rocks and holes: a pothole 0.3-0.6 m beside a rock
   int nests = 0;             ///< of rocks, holes and smooth ones: one inside a hollow or on a mound
-  ShapeWeights weights = kAllShapes;
+  ShapeWeights weights = kRocksAndHoles;
   double placed_within = 18;  ///< features lie in the square from -this to this, or, where there is
                               ///< a corridor, this close to it
   double gap = 0.6;           ///< least distance of two features' rims

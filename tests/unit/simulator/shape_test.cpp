@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <ostream>
 
 namespace scree {
@@ -57,7 +58,7 @@ TEST_P(EveryShape, HasTheSizeItsKindSays) {
     const Measured measured = measure(shape);
     if (is_positive(kind)) {
       EXPECT_GT(measured.highest, 0.14);
-      EXPECT_LT(measured.highest, is_long(kind) ? 0.51 : 1.21);
+      EXPECT_LT(measured.highest, kind == ShapeKind::pillar ? 1.61 : is_long(kind) ? 0.51 : 1.21);
       EXPECT_EQ(measured.lowest, 0);
     } else if (is_negative(kind)) {
       EXPECT_LT(measured.lowest, -0.19);
@@ -99,6 +100,50 @@ TEST_P(EveryShape, IsFlatBeyondItsReachAndOutlinedByItsFootprint) {
     }
     EXPECT_LT(differ, inside / 10 + 5);
   }
+}
+
+TEST(Pillar, IsUprightOnAllSides) {
+  Random random(3);
+  for (int i = 0; i < 40; ++i) {
+    const Shape pillar = Shape::draw(ShapeKind::pillar, random);
+    const double top = pillar.height({0, 0});
+    for (const Eigen::Vector2d& corner : pillar.footprint()) {
+      const double away = corner.norm();
+      EXPECT_LT(pillar.height((away + 0.02) / away * corner), 0.05 * top);
+      if (away > 0.25) continue;  // along a wall its flank is as oblique as the wall is thin
+      EXPECT_GT(pillar.height((away - 0.05) / away * corner), 0.5 * top);
+    }
+  }
+}
+
+/// Of the smallest rectangle around a footprint.
+double share_of_its_box(const Footprint& footprint) {
+  double area = 0;
+  for (std::size_t a = 0, b = footprint.size() - 1; a < footprint.size(); b = a++) {
+    area += (footprint[b].x() * footprint[a].y() - footprint[a].x() * footprint[b].y()) / 2;
+  }
+  double smallest = 1e9;
+  for (double angle = 0; angle < 1.58; angle += 0.01) {
+    Eigen::AlignedBox2d box;
+    for (const Eigen::Vector2d& corner : footprint) {
+      box.extend(Eigen::Rotation2Dd(angle) * corner);
+    }
+    smallest = std::min(smallest, box.volume());
+  }
+  return area / smallest;
+}
+
+TEST(Pillar, IsRoundOrSquareSeenFromAbove) {
+  Random random(4);
+  int round = 0;
+  int square = 0;
+  for (int i = 0; i < 40; ++i) {
+    const double share = share_of_its_box(Shape::draw(ShapeKind::pillar, random).footprint());
+    EXPECT_GT(share, 0.7);
+    (share < 0.85 ? round : square) += 1;
+  }
+  EXPECT_GT(round, 10);
+  EXPECT_GT(square, 10);
 }
 
 std::vector<ShapeKind> all_kinds() {
