@@ -97,10 +97,12 @@ bool is_piece(const Obstacle& whole, const Obstacle& piece) {
   const bool is_hole = piece.kind == ObstacleKind::negative;
   if (distance <= kNear && (is_sliver || (is_hole && fill_a_box(whole, piece)))) return true;
 
-  // Parts of a wall lie on one line.
+  // Parts of a wall lie on one line, and no further apart than what is known of it is long: a post
+  // and a board are two.
   constexpr double kThin = 0.12, kInLine = 0.99;
   const Eigen::Vector2d to = in_box(whole, piece.center);
-  return whole.extent.y() <= kThin && std::abs(to.x()) >= kInLine * to.norm();
+  return whole.extent.y() <= kThin && distance <= whole.extent.x() &&
+         std::abs(to.x()) >= kInLine * to.norm();
 }
 
 }  // namespace

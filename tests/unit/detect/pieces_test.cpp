@@ -95,6 +95,8 @@ TEST(JoinPieces, PartsOfAWallAreOne) {
   EXPECT_EQ(joined({box(3, 1, 2, 0.1, 100), box(6, 2, 1, 0.3, 40)}).size(), 2U)
       << "beside its line";
   EXPECT_EQ(joined({box(3, 1, 2, 0.1, 100), box(8, 1, 1, 0.3, 40)}).size(), 2U) << "3.5 m off";
+  EXPECT_EQ(joined({box(3, 1, 0.8, 0.1, 100), box(5.4, 1, 0.2, 0.1, 40)}).size(), 2U)
+      << "a post on the line of a board, 1.9 m off";
 }
 
 TEST(JoinPieces, LosesNothing) {
