@@ -14,7 +14,7 @@ namespace {
 // Standard deviations of what dead reckoning gets wrong.
 constexpr double kTiltSeconds = 20;    // the IMU's roll and pitch wander this fast
 constexpr double kYawWalk = 0.0005;    // rad in a square root of a second
-constexpr double kDrift = 0.0015;      // of the yaw, rad/s
+constexpr double kDrift = 0.001;       // of the yaw, rad/s
 constexpr double kDriftWalk = 0.0001;  // rad/s in a square root of a second
 constexpr double kScale = 0.015;       // of the wheel's circumference
 constexpr double kScaleWalk = 0.001;   // in a square root of a metre

@@ -12,9 +12,9 @@ constexpr double kConverged = 2e-4;  // metres plus radians
 constexpr std::size_t kKeyPoints = 1500;
 constexpr std::size_t kLeastKeyPoints = 50;
 constexpr double kRangeNoise = 0.02;  // metres
-/// Points of a sweep share the errors of the surfels and of the motion within the sweep: they bind
-/// the pose only as firmly as this many fewer.
-constexpr double kShared = 15;
+/// Points share the errors of the surfels, from sweep to sweep too, and of the motion within a
+/// sweep: they bind the pose only as firmly as this many fewer.
+constexpr double kShared = 40;
 
 constexpr std::size_t kTilts = 3, kHeadings = 8, kBins = 1 + kTilts * kHeadings;
 
