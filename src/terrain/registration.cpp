@@ -13,8 +13,9 @@ constexpr std::size_t kKeyPoints = 1500;
 constexpr std::size_t kLeastKeyPoints = 50;
 constexpr double kRangeNoise = 0.02;  // metres
 /// Points share the errors of the surfels, from sweep to sweep too, and of the motion within a
-/// sweep: they bind the pose only as firmly as this many fewer.
+/// sweep: they bind the pose only as firmly as this many fewer ...
 constexpr double kShared = 40;
+constexpr double kSharedAlone = 15;  // ... while the IMU is silent: nothing else says how it leans
 
 constexpr std::size_t kTilts = 3, kHeadings = 8, kBins = 1 + kTilts * kHeadings;
 
@@ -77,6 +78,7 @@ Registration::Outcome Registration::align(const DeskewedSweep& sweep, SurfelMap&
   choose_key_points(sweep, map, filter.pose());
   if (key_points_.size() < kLeastKeyPoints) return outcome;
   const Eigen::Vector3d predicted = filter.pose().translation;
+  const double shared = filter.knows_attitude() ? kShared : kSharedAlone;
   filter.begin_update();
   PoseEvidence evidence;
   for (int round = 1; round <= kRounds; ++round) {
@@ -101,7 +103,7 @@ Registration::Outcome Registration::align(const DeskewedSweep& sweep, SurfelMap&
       if (std::abs(distance) > threshold) continue;
       const double ratio = distance * distance / (variance + uncertain * uncertain);
       const double robust = 1 / (1 + ratio);
-      const double weight = robust / (variance * kShared);
+      const double weight = robust / (variance * shared);
       Eigen::Matrix<double, 6, 1> jacobian;
       jacobian << normal, turned.cross(normal);
       seen.information += weight * jacobian * jacobian.transpose();

@@ -50,6 +50,8 @@ public:
   const Covariance& covariance() const { return covariance_; }
   double scale_error() const { return scale_; }
   double yaw_drift() const { return drift_; }
+  /// Whether the IMU has said how the latest step turned.
+  bool knows_attitude() const { return knew_attitude_; }
   /// Whether the IMU has ever been heard.
   bool has_known_attitude() const { return has_known_attitude_ || knew_attitude_; }
 
