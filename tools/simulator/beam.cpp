@@ -41,11 +41,14 @@ bool Beam::add(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, 
     echo.reflectivity = random.uniform(20, 50);
   } else {
     const Eigen::Vector3d hit = origin + *ground * direction;
-    facing = std::max(-direction.dot(terrain_.normal(hit.x(), hit.y())), 0.0);
+    const double air = terrain_.underside(hit.x(), hit.y());
+    const bool is_below = air > 0 && terrain_.above_ground(hit) < air / 2;
+    // The normal is that of a rock's top.
+    if (air <= 0) facing = std::max(-direction.dot(terrain_.normal(hit.x(), hit.y())), 0.0);
     echo.reflectivity = terrain_.reflectivity(hit.x(), hit.y());
     // On the very brink of a hole, or on a rock's skirt, nothing is seen of it yet.
     constexpr double kTelling = 0.05;
-    const double relief = terrain_.relief(hit.x(), hit.y());
+    const double relief = is_below ? 0 : terrain_.relief(hit.x(), hit.y());
     echo.relief = static_cast<float>(relief);
     if (std::abs(relief) > kTelling) {
       echo.feature = static_cast<std::uint8_t>(terrain_.feature_at(hit.x(), hit.y()));

@@ -94,10 +94,7 @@ std::optional<double> RayCaster::cast(const Eigen::Vector3d& origin,
 std::optional<double> RayCaster::march(const Eigen::Vector3d& origin,
                                        const Eigen::Vector3d& direction, double from,
                                        double to) const {
-  const auto above = [&](double t) {
-    const Eigen::Vector3d at = origin + t * direction;
-    return at.z() - terrain_.height(at.x(), at.y());
-  };
+  const auto above = [&](double t) { return terrain_.clearance(origin + t * direction); };
   const double step = terrain_.settings().cell;
   double before = from;
   double above_before = above(before);

@@ -39,7 +39,7 @@ constexpr std::array<Recipe, kScenes.size()> kRecipes = {{
      {0, 0.15},
      {0, 0.05},
      kNone,
-     {4, 2, 2, 1, 1, 1, 2, 1, 2, 2, 1, 1, 1, 1}},
+     {4, 2, 2, 1, 1, 1, 3, 1, 2, 2, 1, 1, 1, 1}},
     {"rolling",
      {5, 15},
      0.012,
@@ -51,7 +51,7 @@ constexpr std::array<Recipe, kScenes.size()> kRecipes = {{
      {0, 0.2},
      {0, 0.1},
      {0, 0.25},
-     {3, 2, 2, 2, 1, 1, 1, 2, 2, 2, 2, 1, 1, 1}},
+     {3, 2, 2, 2, 1, 1, 2, 2, 2, 2, 2, 1, 1, 1}},
     {"rough",
      {3, 10},
      0.02,
@@ -63,7 +63,7 @@ constexpr std::array<Recipe, kScenes.size()> kRecipes = {{
      {0, 0.2},
      {0, 0.1},
      {0, 0.1},
-     {3, 3, 2, 2, 1, 1, 1, 2, 2, 2, 2, 1, 1, 1}},
+     {3, 3, 2, 2, 1, 1, 2, 2, 2, 2, 2, 1, 1, 1}},
     {"crater",
      {2, 9},
      0.012,
@@ -75,7 +75,7 @@ constexpr std::array<Recipe, kScenes.size()> kRecipes = {{
      {0, 0.1},
      {0, 0.15},
      {0.1, 0.4},
-     {3, 2, 2, 1, 1, 1, 1, 2, 2, 3, 5, 0, 1, 3}},
+     {3, 2, 2, 1, 1, 1, 2, 2, 2, 3, 5, 0, 1, 3}},
     {"ditch",
      {1, 8},
      0.012,
@@ -87,7 +87,7 @@ constexpr std::array<Recipe, kScenes.size()> kRecipes = {{
      {0, 0.1},
      {0, 0.1},
      {0, 0.1},
-     {2, 1, 1, 1, 3, 4, 1, 1, 1, 1, 1, 6, 1, 1}},
+     {2, 1, 1, 1, 3, 4, 2, 1, 1, 1, 1, 6, 1, 1}},
     {"grass",
      {1, 8},
      0.015,
@@ -99,7 +99,7 @@ constexpr std::array<Recipe, kScenes.size()> kRecipes = {{
      {0, 0.15},
      {0, 0.1},
      {0, 0.15},
-     {3, 2, 2, 2, 2, 1, 2, 1, 2, 2, 2, 2, 1, 1}},
+     {3, 2, 2, 2, 2, 1, 3, 1, 2, 2, 2, 2, 1, 1}},
     {"mixed",
      {1, 13},
      0.015,
@@ -111,7 +111,7 @@ constexpr std::array<Recipe, kScenes.size()> kRecipes = {{
      {0, 0.25},
      {0, 0.15},
      {0, 0.25},
-     {3, 2, 2, 2, 2, 2, 2, 2, 2, 2, 3, 2, 1, 1}},
+     {3, 2, 2, 2, 2, 2, 3, 2, 2, 2, 3, 2, 1, 1}},
 }};
 
 const Recipe& recipe_of(Scene scene) {
@@ -132,7 +132,7 @@ std::optional<Scene> scene_named(std::string_view name) {
 }
 
 TerrainSettings scene_terrain(Scene scene, double area, std::uint64_t seed) {
-  constexpr Range kObstaclesPerSquareMetre = {0.03, 0.1};
+  constexpr Range kObstaclesPerSquareMetre = {0.03, 0.1}, kUndercut = {0.1, 0.7};
   const Recipe& recipe = recipe_of(scene);
   Random random(seed, 0x5CE);
   const double obstacles = std::max(area * kObstaclesPerSquareMetre.draw(random), 4.0);
@@ -154,6 +154,7 @@ TerrainSettings scene_terrain(Scene scene, double area, std::uint64_t seed) {
   settings.neighbours = count(recipe.neighbours);
   settings.nests = count(recipe.nests);
   settings.weights = recipe.weights;
+  settings.undercut = kUndercut.draw(random);
   return settings;
 }
 
@@ -162,6 +163,7 @@ TerrainSettings cloud_terrain(Scene scene, std::uint64_t seed) {
   constexpr double kSparser = 0.5;  // a place that was worth mapping whole is less crowded
   TerrainSettings settings = scene_terrain(scene, kSparser * edge * edge, seed);
   settings.tuft_light = 0;  // there the light is lost that would tell
+  settings.undercut = 0;    // and from above nothing is seen below an edge
   settings.weights[static_cast<std::size_t>(ShapeKind::pillar)] = 0;  // as in the paper's fields
   return settings;
 }

@@ -113,7 +113,14 @@ double Shape::margin() const {
 double Shape::height(const Eigen::Vector2d& point) const {
   const Eigen::Vector2d own = to_own_axes(point);
   const double r = radius(own);
-  return r < spread(kind_) ? size_ * profile(r, own) : 0;
+  return r < spread(kind_) ? size_ * std::lerp(profile(r, own), 1.0, widest_) : 0;
+}
+
+double Shape::underside(const Eigen::Vector2d& point) const {
+  const double r = radius(to_own_axes(point));
+  if (r <= contact_ || r >= 1) return 0;
+  const double outwards = (r - contact_) / (1 - contact_);
+  return size_ * widest_ * (1 - std::sqrt(1 - outwards * outwards));
 }
 
 bool Shape::inside(const Eigen::Vector2d& point) const {

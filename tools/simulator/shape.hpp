@@ -38,6 +38,11 @@ constexpr bool is_negative(ShapeKind kind) {
   return kind >= ShapeKind::bowl && kind <= ShapeKind::ditch;
 }
 
+/// Whether it may lie on the ground rather than in it: Shape::undercut().
+constexpr bool is_loose(ShapeKind kind) {
+  return kind <= ShapeKind::log;
+}
+
 constexpr bool is_long(ShapeKind kind) {
   return kind == ShapeKind::log || kind == ShapeKind::ledge || kind == ShapeKind::ditch;
 }
@@ -56,6 +61,11 @@ public:
   /// @param size instead of the kind's own range
   static Shape draw(ShapeKind kind, Random& random, std::optional<SizeRange> size = std::nullopt);
 
+  /// Makes a rock widest some way up and narrower below, as one that lies on the ground is, and
+  /// slimmer than one that stands in it.
+  /// @pre is_loose(kind())
+  void undercut(Random& random);
+
   ShapeKind kind() const { return kind_; }
   /// Beyond this distance from the centre height() is 0, metres.
   double reach() const { return reach_; }
@@ -63,6 +73,8 @@ public:
   double margin() const;
   /// Metres, below zero in a hole; 0 outside the reach.
   double height(const Eigen::Vector2d& point) const;
+  /// Up to which height there is air below it, metres; 0 where it touches the ground, and outside.
+  double underside(const Eigen::Vector2d& point) const;
   /// Whether the point lies inside the outline (for a crater: inside its rim's crest).
   bool inside(const Eigen::Vector2d& point) const;
   Footprint footprint() const;
@@ -93,6 +105,8 @@ private:
   double detail_ = 0;       ///< tilt of a block, rim of a crater, 1: ledge with a ramp on one side
   double bend_ = 0;         ///< of the middle line of a long shape, 1/metres
   double end_ = 0.05;       ///< length over which a long shape ends, metres
+  double widest_ = 0;       ///< where it is widest, as a share of its height
+  double contact_ = 1;      ///< radius() where it touches the ground
   double reach_ = 0;
   std::array<double, kDirections> outline_{};
 };

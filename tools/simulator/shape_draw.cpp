@@ -55,6 +55,14 @@ Shape Shape::draw(ShapeKind kind, Random& random, std::optional<SizeRange> size)
   return shape;
 }
 
+void Shape::undercut(Random& random) {
+  const double slimmer = random.uniform(0.6, 1.0);
+  semi_axes_ *= slimmer;
+  reach_ *= slimmer;
+  widest_ = random.uniform(0.1, 0.5);
+  contact_ = random.uniform(kind_ == ShapeKind::log ? 0.0 : 0.4, 0.95);
+}
+
 void Shape::draw_size(Random& random, std::optional<SizeRange> size) {
   if (size) {
     size_ = random.uniform(size->low, size->high);

@@ -66,7 +66,7 @@ double distance_to_surface(const Terrain& terrain, const Vector3d& point) {
   };
   const std::ptrdiff_t column = cell_of(point.x());
   const std::ptrdiff_t row = cell_of(point.y());
-  double least = std::abs(point.z() - terrain.height(point.x(), point.y()));
+  double least = std::abs(terrain.clearance(point));
   // Rings of cells about the point's own; a ring is at least as far away as those inside are wide.
   for (std::ptrdiff_t ring = 0; static_cast<double>(ring - 1) * cell < least; ++ring) {
     for (std::ptrdiff_t v = -ring; v <= ring; ++v) {

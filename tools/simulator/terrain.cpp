@@ -18,7 +18,8 @@ enum TerrainStream : std::uint64_t {
   kFeatures = 200,
   kMaterial = 300,
   kUnevenness = 400,
-  kTufts = 500
+  kTufts = 500,
+  kUndercut = 600
 };
 
 double smooth(double t) {
@@ -120,6 +121,14 @@ void Terrain::place_features(std::uint64_t seed) {
   Random random(seed, kFeatures);
   std::vector<PlacedShape> placed = lay_out_features(settings_, seed);
   if (placed.size() > kMostFeatures) placed.resize(kMostFeatures);
+  if (settings_.undercut > 0) {
+    Random undercut(seed, kUndercut);
+    for (PlacedShape& each : placed) {
+      const bool is_chosen = undercut.chance(settings_.undercut);
+      if (is_chosen && is_loose(each.shape.kind())) each.shape.undercut(undercut);
+    }
+    underside_.assign(height_.size(), 0);
+  }
   for (const PlacedShape& shape : placed) stamp(shape, random);
 }
 
@@ -153,7 +162,12 @@ void Terrain::stamp(const PlacedShape& placed, Random& random) {
       const Eigen::Vector2d at = Eigen::Vector2d(coordinate(column), coordinate(row)) - center;
       const std::size_t index = row * vertices_ + column;
       double extra = shape.height(at);
-      if (rocky) extra *= 1 + 0.2 * grain(at.x(), at.y());
+      const double grown = rocky ? 1 + 0.2 * grain(at.x(), at.y()) : 1;
+      extra *= grown;
+      if (rocky && !underside_.empty()) {
+        underside_[index] =
+            std::max(underside_[index], static_cast<float>(grown * shape.underside(at)));
+      }
       if (shape.inside(at)) {
         feature_[index] = static_cast<std::uint8_t>(feature.id);
         ground += static_cast<double>(height_[index]);
@@ -252,6 +266,14 @@ double Terrain::height(double x, double y) const {
 }
 double Terrain::relief(double x, double y) const {
   return bilinear(relief_, x, y);
+}
+
+double Terrain::clearance(const Eigen::Vector3d& at) const {
+  const double above = at.z() - height(at.x(), at.y());
+  const double air = underside(at.x(), at.y());
+  if (above > 0 || air <= 0) return above;
+  const double up = above_ground(at);
+  return std::max(above, std::min(up, air - up));
 }
 
 Eigen::Vector3d Terrain::normal(double x, double y) const {

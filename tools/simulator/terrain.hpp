@@ -48,6 +48,16 @@ public:
   double height(double x, double y) const;
   /// What the features add to the ground there, metres.
   double relief(double x, double y) const;
+  /// Up to which height above the ground there is air below a rock, metres; 0 where there is none.
+  double underside(double x, double y) const {
+    return underside_.empty() ? 0 : bilinear(underside_, x, y);
+  }
+  /// From the ground without features, metres.
+  double above_ground(const Eigen::Vector3d& at) const {
+    return at.z() - height(at.x(), at.y()) + relief(at.x(), at.y());
+  }
+  /// How far a place is from ground and rocks straight up and down, metres; below zero inside them.
+  double clearance(const Eigen::Vector3d& at) const;
   Eigen::Vector3d normal(double x, double y) const;
   /// As Velodyne calibrates it, 0..255.
   double reflectivity(double x, double y) const;
@@ -84,6 +94,7 @@ private:
   double half_;
   std::size_t vertices_;
   std::vector<float> height_, relief_;
+  std::vector<float> underside_;  // empty where no rock has air below it
   std::vector<std::uint8_t> feature_, reflectivity_;
   std::vector<TerrainFeature> features_;
   Tufts tufts_;

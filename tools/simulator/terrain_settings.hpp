@@ -29,6 +29,7 @@ struct TerrainSettings {
   int pairs = 1;             ///< of the rocks: two 0.3-0.6 m apart
   int neighbours = 0;        ///< of rocks and holes: a pothole 0.3-0.6 m beside a rock
   int nests = 0;             ///< of rocks, holes and smooth ones: one inside a hollow or on a mound
+  double undercut = 0;       ///< share of the rocks that are narrower at the ground than above
   ShapeWeights weights = kRocksAndHoles;
   double placed_within = 18;  ///< features lie in the square from -this to this, or, where there is
                               ///< a corridor, this close to it

@@ -16,6 +16,8 @@ TerrainSettings plane() {
   return settings;
 }
 
+const Eigen::Vector3d kLevel(1, 1, 0), kUp = Eigen::Vector3d::UnitZ();
+
 Eigen::Vector3d direction(double azimuth_deg, double elevation_deg) {
   const double a = radians(azimuth_deg);
   const double e = radians(elevation_deg);
@@ -66,6 +68,48 @@ TEST(RayCaster, AgreesWithFineStepsOverRoughGround) {
     }
   }
   EXPECT_GT(hits, 1000);
+}
+
+TEST(RayCaster, LooksBelowTheEdgeOfARockThatLiesOnTheGround) {
+  TerrainSettings settings = plane();
+  settings.positive = 12;
+  settings.pairs = 0;
+  settings.weights = {};
+  settings.weights[static_cast<std::size_t>(ShapeKind::boulder)] = 1;
+  settings.undercut = 1;
+  settings.placed_within = 8;
+  const Terrain terrain(settings, 3);
+  const RayCaster caster(terrain);
+  constexpr double kAway = 2;
+  int deeper = 0, below = 0;
+  for (const TerrainFeature& rock : terrain.features()) {
+    for (double azimuth = 0; azimuth < 360; azimuth += 20) {
+      const Eigen::Vector3d inwards = direction(azimuth, 0);
+      const auto range_at = [&](double height) {
+        const Eigen::Vector3d from = (rock.center - kAway * inwards).cwiseProduct(kLevel);
+        return caster.cast(from + height * kUp, inwards, kAway + 2).value_or(kAway + 2);
+      };
+      const double at_the_ground = range_at(0.004);
+      double nearest = at_the_ground;
+      for (double height = 0.01; height < rock.height; height += 0.01) {
+        nearest = std::min(nearest, range_at(height));
+      }
+      if (at_the_ground < nearest + 0.02) continue;
+      ++deeper;
+      // A beam that comes down to just before the rock's foot meets the ground below its edge.
+      const Eigen::Vector3d foot =
+          rock.center.cwiseProduct(kLevel) + (at_the_ground - 0.01 - kAway) * inwards;
+      const Eigen::Vector3d from = foot - kAway * inwards + 0.05 * kUp;
+      const auto range = caster.cast(from, (foot - from).normalized(), kAway + 1);
+      ASSERT_TRUE(range);
+      below += std::abs(*range - (foot - from).norm()) < 1e-2 &&
+                       terrain.feature_at(foot.x(), foot.y()) == rock.id
+                   ? 1
+                   : 0;
+    }
+  }
+  EXPECT_GT(deeper, 100);
+  EXPECT_GT(below, deeper / 2);
 }
 
 }  // namespace

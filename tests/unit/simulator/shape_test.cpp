@@ -102,6 +102,29 @@ TEST_P(EveryShape, IsFlatBeyondItsReachAndOutlinedByItsFootprint) {
   }
 }
 
+TEST(Undercut, IsAirBelowARockAroundWhereItTouchesTheGround) {
+  Random random(5);
+  for (int i = 0; i < 20; ++i) {
+    const Shape in_ground = Shape::draw(i % 2 == 0 ? ShapeKind::boulder : ShapeKind::log, random);
+    Shape on_ground = in_ground;
+    on_ground.undercut(random);
+    EXPECT_EQ(on_ground.underside({0, 0}), 0);
+    for (const Eigen::Vector2d& corner : on_ground.footprint()) {
+      double air = 0;
+      for (double share = 0; share < 0.99; share += 0.05) {
+        const double deeper = on_ground.underside(share * corner);
+        EXPECT_GE(deeper, air);
+        EXPECT_LE(deeper, on_ground.height(share * corner));
+        EXPECT_EQ(in_ground.underside(share * corner), 0);
+        air = deeper;
+      }
+      EXPECT_GT(on_ground.underside(0.98 * corner), 0);
+      EXPECT_EQ(on_ground.underside(1.01 * corner), 0);
+      EXPECT_EQ(on_ground.height(1.01 * corner), 0);
+    }
+  }
+}
+
 TEST(Pillar, IsUprightOnAllSides) {
   Random random(3);
   for (int i = 0; i < 40; ++i) {

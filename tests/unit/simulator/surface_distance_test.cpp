@@ -74,6 +74,29 @@ TEST(SurfaceDistance, APointOnAWallIsOnTheSurface) {
   EXPECT_GT(on_walls, 5);
 }
 
+TEST(SurfaceDistance, BelowARocksEdgeItIsToTheGroundOrTheRock) {
+  TerrainSettings settings = level();
+  settings.positive = 6;
+  settings.undercut = 1;
+  settings.weights = {};
+  settings.weights[static_cast<std::size_t>(ShapeKind::block)] = 1;
+  const Terrain terrain(settings, 3);
+  int below = 0;
+  for (double x = -3; x < 3; x += 0.05) {
+    for (double y = -3; y < 3; y += 0.05) {
+      const double air = terrain.underside(x, y);
+      if (air < 0.12 || terrain.height(x, y) < air + 0.03) continue;
+      ++below;
+      EXPECT_NEAR(terrain.clearance({x, y, 0.02}), 0.02, 1e-6);
+      EXPECT_LE(distance_to_surface(terrain, {x, y, 0.02}), 0.02 + 1e-6);
+      EXPECT_LE(distance_to_surface(terrain, {x, y, air - 0.02}), 0.02 + 1e-6);
+      EXPECT_GT(terrain.clearance({x, y, air / 2}), 0);
+      EXPECT_LT(terrain.clearance({x, y, air + 0.02}), 0);
+    }
+  }
+  EXPECT_GT(below, 20);
+}
+
 TEST(SurfaceDistance, OfACloudIsBroughtToTheWorldFirst) {
   const Terrain terrain(level(), 1);
   PointCloud cloud(3);
