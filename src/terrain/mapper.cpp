@@ -1,11 +1,16 @@
 #include "scree/terrain/mapper.hpp"
 
+#include <algorithm>
+#include <limits>
+
 #include "scree/core/rotation.hpp"
 
 namespace scree {
 namespace {
 
-constexpr float kSurfel = 0.3F;  // metres
+constexpr float kSurfel = 0.3F;      // metres
+constexpr double kMostAskew = 0.08;  // metres that a point may be too high or too low
+constexpr double kUnjudged = 0.01;   // rad: the attitude within a sweep, guessed for the first time
 
 }  // namespace
 
@@ -27,6 +32,7 @@ void Mapper::add(const Sweep& sweep, const SyncBuffer& sensors, StageTimer& time
   watch_for_slip(sensors, sweep.end_ns);
   step_ = dead_reckoning_.advance(sensors, begin_ns, sweep.end_ns, track_, !slip_watch_.slips());
   const bool has_known_attitude = filter_.has_known_attitude();
+  const bool was_silent = has_known_attitude && !filter_.knows_attitude();
   filter_.predict(step_);
   has_begun_anew_ = filter_.has_known_attitude() && !has_known_attitude;
   if (has_begun_anew_) {
@@ -36,6 +42,7 @@ void Mapper::add(const Sweep& sweep, const SyncBuffer& sensors, StageTimer& time
   }
   deskew(sweep, lidar_, track_, sweep_);
   timer.done(Stage::motion);
+  const Eigen::Quaterniond predicted = pose().rotation;
   outcome_ = {};
   if (registers_) {
     correct();
@@ -43,7 +50,9 @@ void Mapper::add(const Sweep& sweep, const SyncBuffer& sensors, StageTimer& time
   }
   assume_motion(before);
   levelling_.advance(sensors, step_, pose());
-  map_.add(sweep_, filter_.pose(), sweep.end_ns);
+  judge_guess(predicted, was_silent);
+  const double reach = askew_ > 0 ? kMostAskew / askew_ : std::numeric_limits<double>::infinity();
+  map_.add(sweep_, filter_.pose(), sweep.end_ns, reach);
   timer.done(Stage::map);
 }
 
@@ -65,6 +74,20 @@ void Mapper::correct() {
     if (seen.squaredNorm() > reach * reach) continue;
     surfels_.add(rotation * seen + translation);
   }
+}
+
+/// While the IMU is silent the turn within a sweep is guessed; what registration makes of the whole
+/// turn shows how well.
+void Mapper::judge_guess(const Eigen::Quaterniond& predicted, bool was_silent) {
+  constexpr double kKept = 0.5;  // each sweep
+  if (!filter_.has_known_attitude() || (step_.knows_attitude && !was_silent)) {
+    askew_ = 0;
+    return;
+  }
+  if (askew_ == 0) askew_ = kUnjudged;
+  if (outcome_.key_points == 0) return;
+  const double off = logarithm(predicted.conjugate() * pose().rotation).head<2>().norm();
+  askew_ = std::max(off, kKept * askew_ + (1 - kKept) * off);
 }
 
 /// A silent sensor is stood in for by what registration made of the motion.

@@ -118,14 +118,15 @@ void RollingMap::recentre(const Pose& pose) {
   }
 }
 
-void RollingMap::add(const DeskewedSweep& sweep, const Pose& pose, std::int64_t end_ns) {
+void RollingMap::add(const DeskewedSweep& sweep, const Pose& pose, std::int64_t end_ns,
+                     double reach_of_sweep) {
   ++sweep_;
   end_ns_ = end_ns;
   recentre(pose);
   fade_beams();
   const Eigen::Matrix3f rotation = pose.rotation.toRotationMatrix().cast<float>();
   const Eigen::Vector3f translation = (pose.translation - origin_).cast<float>();
-  const auto reach = static_cast<float>(settings_.reach);
+  const auto reach = static_cast<float>(std::min(settings_.reach, reach_of_sweep));
   constexpr std::uint16_t kMost = 40;
   for (std::size_t i = 0; i < sweep.points.size(); ++i) {
     const Eigen::Vector3f seen(sweep.points.x[i], sweep.points.y[i], sweep.points.z[i]);
@@ -146,7 +147,7 @@ void RollingMap::add(const DeskewedSweep& sweep, const Pose& pose, std::int64_t 
     voxel->passed = 0;
     ++voxel->beams.ended;
   }
-  see_through(sweep, rotation, translation);
+  see_through(sweep, rotation, translation, reach);
   forget(pose);
   gather_cloud(translation);
 }
@@ -156,13 +157,12 @@ void RollingMap::add(const DeskewedSweep& sweep, const Pose& pose, std::int64_t 
 /// clear of the hit, for poses err; grass is counted nearer to it. Through grass as many beams pass
 /// below a blade as above it, over a rock only above: those below count for both.
 void RollingMap::see_through(const DeskewedSweep& sweep, const Eigen::Matrix3f& rotation,
-                             const Eigen::Vector3f& translation) {
+                             const Eigen::Vector3f& translation, float reach) {
   constexpr std::uint16_t kEvery = 4;
   constexpr float kClear = 0.3F, kClearShare = 0.08F;   // before the hit: metres, and of the range
   constexpr float kBeam = 0.6F;                         // of a voxel: this near a beam hits it
   constexpr float kFartherOn = 0.12F, kThrough = 0.4F;  // metres behind it, and of a voxel
   const auto voxel_size = static_cast<float>(settings_.voxel);
-  const auto reach = static_cast<float>(settings_.reach);
   const auto search_reach = static_cast<float>(settings_.search_reach);
   const Eigen::Vector3f shift = origin_.cast<float>();
   const float near = kBeam * voxel_size, through = kThrough * voxel_size;

@@ -51,6 +51,7 @@ public:
 private:
   void watch_for_slip(const SyncBuffer& sensors, std::int64_t end_ns);
   void correct();
+  void judge_guess(const Eigen::Quaterniond& predicted, bool was_silent);
   void assume_motion(const Pose& before);
 
   LidarSettings lidar_;
@@ -60,6 +61,7 @@ private:
   SlipWatch slip_watch_;
   std::uint64_t slips_ = 0;
   bool has_begun_anew_ = false;
+  double askew_ = 0;  // rad: error of the turn within a sweep that was guessed; 0 of one measured
   MotionTrack track_;
   DeskewedSweep sweep_;
   PoseFilter filter_;

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "scree/config/settings.hpp"
@@ -26,7 +27,9 @@ public:
 
   /// Adds a sweep that ended at `end_ns`, seen from `pose` (`base` in the map's frame), and
   /// forgets.
-  void add(const DeskewedSweep& sweep, const Pose& pose, std::int64_t end_ns);
+  /// @param reach metres from `base`; what lies farther off is not taken
+  void add(const DeskewedSweep& sweep, const Pose& pose, std::int64_t end_ns,
+           double reach = std::numeric_limits<double>::infinity());
   /// Everything is unseen again.
   void clear();
 
@@ -76,7 +79,7 @@ private:
   void fade_beams();
   void forget(const Pose& pose);
   void see_through(const DeskewedSweep& sweep, const Eigen::Matrix3f& rotation,
-                   const Eigen::Vector3f& translation);
+                   const Eigen::Vector3f& translation, float reach);
   bool is_confirmed(const Voxel& voxel) const;
   void gather_cloud(const Eigen::Vector3f& here);
 

@@ -134,6 +134,40 @@ TEST_F(MapperTest, LivesThroughAnImuThatIsSilentAndBack) {
   EXPECT_LT(roughness_of_map(), 0.05);
 }
 
+TEST_F(MapperTest, WhileTheImuIsSilentOnlyWhatIsSurelyInItsPlaceIsMapped) {
+  const auto far = [&] {
+    const RollingMap& map = mapper_->map();
+    const Eigen::Vector3f here = (mapper_->pose().translation - map.origin()).cast<float>();
+    int points = 0;
+    for (std::size_t i = 0; i < map.cloud().size(); ++i) {
+      const float x = map.cloud().x[i] - here.x(), y = map.cloud().y[i] - here.y();
+      if (std::hypot(x, y) > 7) ++points;
+    }
+    return points;
+  };
+  go(20);
+  int before = far();
+  go(20, false);
+  EXPECT_GT(far(), 1.5 * before) << "on a smooth way a guess serves";
+
+  make(settings_);
+  sensors_ = std::make_unique<SyncBuffer>();
+  sweeps_ = 0;
+  const auto smooth = drive_.base;
+  drive_.base = [smooth](double t) {
+    Pose base = smooth(t);
+    base.rotation = base.rotation * from_roll_pitch_yaw(0, 0.05 * std::sin(9 * t), 0);
+    return base;
+  };
+  go(20);
+  before = far();
+  go(20, false);
+  EXPECT_LT(far(), 1.5 * before) << "and on a bumpy one it does not";
+  EXPECT_LT(roughness_of_map(), 0.05);
+  go(15);
+  EXPECT_GT(far(), 1.3 * before);
+}
+
 TEST_F(MapperTest, LivesThroughAnImuThatStartsOver) {
   go(20);
   go(20, false);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <map>
 #include <random>
 #include <tuple>
@@ -40,8 +41,8 @@ protected:
     sweep_.points.push_back(seen.x(), seen.y(), seen.z(), 20);
     sweep_.origins.push_back(Eigen::Vector3f(0, 0, 1));
   }
-  void end_sweep() {
-    map_.add(sweep_, pose_, now_ns_ += kTurnNs);
+  void end_sweep(double reach = std::numeric_limits<double>::infinity()) {
+    map_.add(sweep_, pose_, now_ns_ += kTurnNs, reach);
     sweep_.points.clear();
     sweep_.origins.clear();
   }
@@ -88,6 +89,26 @@ TEST_F(RollingMapTest, KeepsTheMeanOfEachVoxelsPoints) {
     ASSERT_LT((confirmed(i) - mean).norm(), 1e-5);
     ASSERT_EQ(map_.cloud().reflectivity[i], 20);
   }
+}
+
+TEST_F(RollingMapTest, ASweepsReachIsKept) {
+  pose_ = {{-1, 2, 0}, from_roll_pitch_yaw(0, 0, 1)};
+  const Eigen::Vector3d near(1, 2, 0), far(4, 2, 0);
+  for (const double reach : {4.0, 6.0}) {
+    for (int sweep = 0; sweep < 3; ++sweep) {
+      see(near);
+      see(far);
+      end_sweep(reach);
+    }
+    EXPECT_TRUE(has_near(near));
+    EXPECT_EQ(has_near(far), reach > 5);
+  }
+  // What stands farther off than a sweep reaches is not seen through either.
+  for (int sweep = 0; sweep < 50; ++sweep) {
+    see({9, 2, -0.8});
+    end_sweep(4);
+  }
+  EXPECT_TRUE(has_near(far));
 }
 
 TEST_F(RollingMapTest, APointThatNoOtherSweepConfirmsStaysOutAndGoes) {
