@@ -82,8 +82,8 @@ void Detector::detect(PointView cloud, std::span<const BeamCount> beams,
   counts_ = {.input = cloud.size()};
   thin(cloud);
   timer.done(Stage::voxel_grid);
+  build_surface(cloud, beams);
   choose_candidates();
-  weigh_beams(cloud, beams);
   timer.done(Stage::surface);
   find_edges();
   timer.done(Stage::gradient);
@@ -115,13 +115,32 @@ void Detector::thin(PointView cloud) {
   counts_.below_clearance = thinned_.size();
 }
 
-void Detector::choose_candidates() {
+void Detector::build_surface(PointView cloud, std::span<const BeamCount> beams) {
   cells_.build(thinned_, gradient_.reach());
+  if (!settings_.uses_surface()) return;
+  surface_.build(cells_.points(), surface_settings(settings_));
+  const float highest = settings_.clearance > 0 ? static_cast<float>(settings_.clearance)
+                                                : std::numeric_limits<float>::infinity();
+  solidity_.build(cloud, beams, surface_, static_cast<float>(settings_.body_height), highest);
+  if (!beams.empty()) leave_out_ground_below_edges();
+}
+
+/// A rock that is narrower at the ground than above is no less steep for the ground seen below it.
+void Detector::leave_out_ground_below_edges() {
+  const PointCloud& points = cells_.points();
+  const auto highest = static_cast<float>(settings_.body_height);
+  cells_.remove([&](std::size_t i) {
+    const float x = points.x[i], y = points.y[i];
+    return solidity_.stops_all(surface_.cell_at(x, y)) &&
+           std::abs(points.z[i] - surface_.height(x, y)) < highest;
+  });
+}
+
+void Detector::choose_candidates() {
   const PointCloud& points = cells_.points();
   is_candidate_.assign(points.size(), 1);
   height_.assign(points.size(), 0);
   if (!settings_.uses_surface()) return;
-  surface_.build(points, surface_settings(settings_));
   const auto least = static_cast<float>(settings_.body_height);
   for (std::size_t i = 0; i < points.size(); ++i) {
     height_[i] = points.z[i] - surface_.height(points.x[i], points.y[i]);
@@ -130,13 +149,6 @@ void Detector::choose_candidates() {
         std::abs(height_[i]) >= least && !surface_.is_ground(points.x[i], points.y[i]);
     is_candidate_[i] = is_body ? 1 : 0;
   }
-}
-
-void Detector::weigh_beams(PointView cloud, std::span<const BeamCount> beams) {
-  if (!settings_.uses_surface()) return;
-  const float highest = settings_.clearance > 0 ? static_cast<float>(settings_.clearance)
-                                                : std::numeric_limits<float>::infinity();
-  solidity_.build(cloud, beams, surface_, static_cast<float>(settings_.body_height), highest);
 }
 
 void Detector::find_edges() {
@@ -241,7 +253,7 @@ void Detector::count_members(std::span<const std::uint32_t> labels, std::size_t 
 void Detector::measure_clusters() {
   EdgePoints& edges = thins_edges() ? kept_ : edges_;
   if (settings_.uses_surface()) {
-    surroundings_.build(cells_.points(), height_, edges, surface_);
+    surroundings_.build(thinned_, edges, surface_);
   }
   for (Cluster& cluster : clusters_.all()) {
     const auto members = clusters_.members(cluster);

@@ -35,13 +35,13 @@ bool has_near(std::size_t cell, std::size_t reach, const GroundSurface& surface,
 
 }  // namespace
 
-void Surroundings::build(PointView cloud, std::span<const float> heights, const EdgePoints& edges,
-                         const GroundSurface& surface) {
+void Surroundings::build(PointView cloud, const EdgePoints& edges, const GroundSurface& surface) {
   constexpr float kGroundTolerance = 0.05F;
   ground_seen_.assign(4 * surface.columns() * surface.rows(), 0);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (std::abs(heights[i]) > kGroundTolerance) continue;
-    ground_seen_[quarter_at(cloud.x[i], cloud.y[i], surface)] = 1;
+    const float x = cloud.x[i], y = cloud.y[i];
+    if (std::abs(cloud.z[i] - surface.height(x, y)) > kGroundTolerance) continue;
+    ground_seen_[quarter_at(x, y, surface)] = 1;
   }
   sides_.assign(surface.columns() * surface.rows(), 0);
   visited_.assign(surface.columns() * surface.rows(), 0);

@@ -79,8 +79,9 @@ public:
 
 private:
   void thin(PointView cloud);
+  void build_surface(PointView cloud, std::span<const BeamCount> beams);
+  void leave_out_ground_below_edges();
   void choose_candidates();
-  void weigh_beams(PointView cloud, std::span<const BeamCount> beams);
   void find_edges();
   bool uses_regions() const { return settings_.cluster_method == ClusterMethod::regions; }
   bool thins_edges() const {

@@ -27,6 +27,10 @@ public:
   /// max_points of them
   void build(PointView cloud, float radius);
 
+  /// Takes out the sorted points of which leave_out(index) is true.
+  template <class LeaveOut>
+  void remove(LeaveOut&& leave_out);
+
   std::size_t size() const { return sort_.size(); }
   /// The sorted points.
   const PointCloud& points() const { return points_; }
@@ -57,6 +61,22 @@ private:
   KeySort sort_;
   PointCloud points_;
 };
+
+template <class LeaveOut>
+void PlaneCells::remove(LeaveOut&& leave_out) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < size(); ++i) {
+    if (leave_out(i)) continue;
+    sort_.move(i, kept);
+    points_.x[kept] = points_.x[i];
+    points_.y[kept] = points_.y[i];
+    points_.z[kept] = points_.z[i];
+    points_.reflectivity[kept] = points_.reflectivity[i];
+    ++kept;
+  }
+  sort_.shrink(kept);
+  points_.resize(kept);
+}
 
 template <class Visit>
 void PlaneCells::for_each_cell(Visit&& visit) const {

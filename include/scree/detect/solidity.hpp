@@ -26,6 +26,8 @@ public:
   float ended(std::size_t cell) const { return ended_[cell]; }
   float passed(std::size_t cell) const { return passed_[cell]; }
   float of(std::size_t cell) const { return share(ended_[cell], passed_[cell]); }
+  /// Whether beams ended on what stands in it, and hardly any went on.
+  bool stops_all(std::size_t cell) const { return ended_[cell] > 0 && of(cell) >= kAll; }
   /// Of the cells up to two cells away, too.
   float around(std::size_t cell) const { return around_[cell]; }
 
@@ -33,6 +35,9 @@ public:
   static float share(float ended, float passed) { return (ended + 1) / (ended + passed + 1); }
 
 private:
+  /// Voxels at an edge count beams that went past it, too.
+  static constexpr float kAll = 0.94F;
+
   void spread(std::size_t columns);
 
   FixedVector<float> ended_, passed_, around_;

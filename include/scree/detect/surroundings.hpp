@@ -25,9 +25,7 @@ public:
 
   /// Notes where the ground itself was seen, and in which cells something stands above it or lies
   /// below it.
-  /// @param heights of the cloud's points above the surface
-  void build(PointView cloud, std::span<const float> heights, const EdgePoints& edges,
-             const GroundSurface& surface);
+  void build(PointView cloud, const EdgePoints& edges, const GroundSurface& surface);
 
   /// Sets the features from box_length on.
   /// @param members of the cluster among the points given to build()

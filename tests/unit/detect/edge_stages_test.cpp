@@ -1,6 +1,7 @@
 // Gradient and suppression against the paper's formulas written out plainly, in double.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -103,6 +104,41 @@ TEST(Gradient, OfAPlaneIsItsSlope) {
   EXPECT_GT(known, 10'000);
   EXPECT_NEAR(sum_x / known, 0.3, 0.003);
   EXPECT_NEAR(sum_y / known, -0.1, 0.003);
+}
+
+TEST(PlaneCells, WithoutSomePointsTheyAreAsBuiltFromTheOthers) {
+  const PointCloud cloud = test::scattered(5'000, 2, 1);
+  const auto leave_out = [](float x, float z) { return z > 0.2F || x < -1.5F; };
+  PointCloud others(cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (leave_out(cloud.x[i], cloud.z[i])) continue;
+    others.push_back(cloud.x[i], cloud.y[i], cloud.z[i], cloud.reflectivity[i]);
+  }
+  PlaneCells cells(cloud.size()), expected(cloud.size());
+  cells.build(cloud, 0.1F);
+  expected.build(others, 0.1F);
+  cells.remove([&](std::size_t i) { return leave_out(cells.points().x[i], cells.points().z[i]); });
+  const auto points_of = [](const PlaneCells& of) {
+    const PointCloud& at = of.points();
+    std::vector<std::array<float, 4>> points;
+    for (std::size_t i = 0; i < of.size(); ++i) {
+      points.push_back({at.x[i], at.y[i], at.z[i], at.reflectivity[i]});
+    }
+    return points;
+  };
+  const auto runs_of = [](const PlaneCells& of) {
+    std::vector<std::uint32_t> ends;
+    of.for_each_cell([&](auto cell, auto neighbourhood) {
+      ends.insert(ends.end(), {cell.begin, cell.end});
+      for (const auto& run : neighbourhood) ends.insert(ends.end(), {run.begin, run.end});
+    });
+    return ends;
+  };
+  EXPECT_EQ(points_of(cells), points_of(expected));
+  EXPECT_GT(cells.size(), 1'000U);
+  EXPECT_EQ(runs_of(cells), runs_of(expected));
+  cells.remove([](std::size_t) { return true; });
+  EXPECT_EQ(cells.size(), 0U);
 }
 
 TEST(Gradient, IsUnknownNotZeroWhereNeighboursLack) {

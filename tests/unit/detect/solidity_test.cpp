@@ -84,6 +84,19 @@ TEST_F(SolidityTest, WithoutBeamsAllIsSolid) {
   EXPECT_EQ(solidity_.ended(middle()), 0);
 }
 
+TEST_F(SolidityTest, AllIsStoppedWhereHardlyABeamWentOn) {
+  const auto stops_all = [&](BeamCount each) {
+    beams_.assign(cloud_.size(), each);
+    solidity_.build(cloud_, beams_, surface_, kLowest, kHighest);
+    return solidity_.stops_all(middle());
+  };
+  EXPECT_TRUE(stops_all({100, 0}));
+  EXPECT_TRUE(stops_all({100, 3}));
+  EXPECT_FALSE(stops_all({100, 10})) << "a dense tuft";
+  EXPECT_FALSE(stops_all({0, 0})) << "no beam came to it";
+  EXPECT_FALSE(solidity_.stops_all(surface_.cell_at(1, 1))) << "nothing stands there";
+}
+
 TEST_F(SolidityTest, TakesPointsThatAreNoNumbers) {
   solidity_.build(cloud_, beams_, surface_, kLowest, kHighest);
   const auto total = [&] {

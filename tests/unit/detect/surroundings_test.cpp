@@ -90,6 +90,30 @@ TEST(Surroundings, MeasuresTheShareOfTheBeamsThatEnded) {
   EXPECT_NEAR(grass[core_solidity], 0.25, 0.01);
 }
 
+TEST(Surroundings, GroundBelowItsEdgeMakesARockNoLessSteep) {
+  // As wide as a table on its foot: half the points within its outline lie on the ground.
+  const auto table = [](float x, float y, float chance) {
+    return inside(x, y) && chance < 0.5F ? 0.4F : 0.0F;
+  };
+  const PointCloud cloud = ground_with(table);
+  std::vector<BeamCount> beams(cloud.size(), {100, 0});
+  const Features rock = features_of(cloud, beams);
+  const PointCloud block =
+      ground_with([](float x, float y, float) { return inside(x, y) ? 0.4F : 0.0F; });
+  const Features straight = features_of(block, beams);
+  EXPECT_GT(rock[through_share], 0.5) << "the ground below it is seen";
+  EXPECT_NEAR(rock[steepness], straight[steepness], 0.1 * straight[steepness]);
+
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (cloud.z[i] > 0) beams[i] = {100, 30};
+  }
+  const Features tuft = features_of(cloud, beams);
+  EXPECT_GT(tuft[through_share], 0.5);
+  EXPECT_LT(tuft[steepness], 0.7 * straight[steepness]);
+  EXPECT_LT(features_of(cloud)[steepness], 0.7 * straight[steepness])
+      << "nothing is known without beams";
+}
+
 TEST(Surroundings, ARocksEdgeIsHighAndAMoundsIsLow) {
   const Features slab =
       features_of(ground_with([](float x, float y, float) { return inside(x, y) ? 0.2F : 0.0F; }));
