@@ -60,11 +60,11 @@ void SweepBuilder::add(const Shots& shots, std::int64_t device_ns, std::int64_t 
       const std::size_t first = shots.firing_order[i - 1];
       if (shots.range[first] == range && shots.reflectivity[first] == reflectivity) continue;
     }
-    if (!sweep_.time_ns.push_back(static_cast<std::int32_t>(shot_ns - begin_ns_))) {
+    if (!sweep_.push_back({shots.x[shot], shots.y[shot], shots.z[shot]}, reflectivity,
+                          static_cast<std::int32_t>(shot_ns - begin_ns_), laser_of(shot))) {
       ++sweep_.dropped;
       continue;
     }
-    sweep_.points.push_back(shots.x[shot], shots.y[shot], shots.z[shot], reflectivity);
     last_return_ns_ = shot_ns;
     sweep_.packets += counted ? 0 : 1;
     counted = true;

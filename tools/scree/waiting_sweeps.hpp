@@ -47,9 +47,8 @@ private:
   static Sweep copy(const Sweep& sweep) {
     Sweep copied(sweep.points.size());
     for (std::size_t i = 0; i < sweep.points.size(); ++i) {
-      copied.points.push_back(sweep.points.x[i], sweep.points.y[i], sweep.points.z[i],
-                              sweep.points.reflectivity[i]);
-      copied.time_ns.push_back(sweep.time_ns[i]);
+      copied.push_back({sweep.points.x[i], sweep.points.y[i], sweep.points.z[i]},
+                       sweep.points.reflectivity[i], sweep.time_ns[i], sweep.laser[i]);
     }
     copied.end_ns = sweep.end_ns;
     copied.packets = sweep.packets;

@@ -177,9 +177,8 @@ bool DriveFeed::next(Sweep& sweep, std::initializer_list<SyncBuffer*> sensors) {
       }
       last_ns_ = shot.t_ns;
       if (shot.range <= 0 || is_lost_) continue;
-      const Eigen::Vector3f point = lidar_.point_of(shot_).cast<float>();
-      sweep.points.push_back(point.x(), point.y(), point.z(), shot.reflectivity);
-      sweep.time_ns.push_back(static_cast<std::int32_t>(shot.t_ns - begin_ns_));
+      sweep.push_back(lidar_.point_of(shot_).cast<float>(), shot.reflectivity,
+                      static_cast<std::int32_t>(shot.t_ns - begin_ns_), shot_ % velodyne::kLasers);
     }
     lidar_.advance();
     observer_.watch(lidar_);

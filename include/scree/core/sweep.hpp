@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 
@@ -13,16 +14,25 @@ struct Sweep {
   std::int64_t end_ns = 0;            ///< host time of the last point
   PointCloud points;                  ///< `lidar` frame, metres
   FixedVector<std::int32_t> time_ns;  ///< of each point, relative to end_ns, zero or below
+  FixedVector<std::uint8_t> laser;    ///< of each point: its number in the sensor, 0 to 15
   std::uint32_t packets = 0;          ///< data packets that gave it points
   std::uint32_t dropped = 0;          ///< points that did not fit
   bool is_whole = true;               ///< a full turn, unlike a lidar's first sweep
 
   Sweep() = default;
-  explicit Sweep(std::size_t capacity) : points(capacity), time_ns(capacity) {}
+  explicit Sweep(std::size_t capacity) : points(capacity), time_ns(capacity), laser(capacity) {}
 
+  /// @param at metres, `lidar` frame
+  /// False when full; the point is then not taken.
+  bool push_back(const Eigen::Vector3f& at, float reflectivity, std::int32_t t_ns,
+                 std::size_t laser_number) {
+    return points.push_back(at.x(), at.y(), at.z(), reflectivity) && time_ns.push_back(t_ns) &&
+           laser.push_back(static_cast<std::uint8_t>(laser_number));
+  }
   void clear() {
     points.clear();
     time_ns.clear();
+    laser.clear();
     end_ns = 0;
     packets = dropped = 0;
   }

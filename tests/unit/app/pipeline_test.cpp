@@ -18,10 +18,7 @@ Pipeline pipeline_of(const Settings& settings) {
 
 Sweep sweep_of(std::initializer_list<Eigen::Vector3f> points) {
   Sweep sweep(points.size());
-  for (const Eigen::Vector3f& point : points) {
-    sweep.points.push_back(point.x(), point.y(), point.z(), 7);
-    sweep.time_ns.push_back(0);
-  }
+  for (const Eigen::Vector3f& point : points) sweep.push_back(point, 7, 0, 0);
   sweep.end_ns = 1'598'612'523'000'000'042;
   return sweep;
 }

@@ -51,9 +51,9 @@ protected:
       const Pose at = lidar_at(drive_, lidar_, t);
       const double far = range(at.translation, at.rotation * along);
       if (far <= 0) continue;
-      const Eigen::Vector3f seen = (far * along).cast<float>();
-      sweep_.points.push_back(seen.x(), seen.y(), seen.z(), static_cast<float>(i % 100));
-      sweep_.time_ns.push_back(static_cast<std::int32_t>(std::llround((t - kEnd) * 1e9)));
+      sweep_.push_back((far * along).cast<float>(), static_cast<float>(i % 100),
+                       static_cast<std::int32_t>(std::llround((t - kEnd) * 1e9)),
+                       static_cast<std::size_t>(i % 3));
     }
   }
   Eigen::Vector3d point(std::size_t i) const {
@@ -108,8 +108,7 @@ TEST_F(DeskewTest, LeavesOutWhatIsNearOrFarOrNoNumber) {
   constexpr float kBad = std::numeric_limits<float>::quiet_NaN();
   constexpr float kHuge = std::numeric_limits<float>::infinity();
   for (const float x : {0.9F, 1.1F, 9.9F, 10.1F, kBad, kHuge, -kHuge, -5.0F, 1e30F}) {
-    sweep_.points.push_back(x, 0, 0, 1);
-    sweep_.time_ns.push_back(-1000);
+    sweep_.push_back({x, 0, 0}, 1, -1000, 0);
   }
   follow();
   EXPECT_EQ(out_.points.size(), 3U);
@@ -132,8 +131,7 @@ TEST_F(DeskewTest, CountsWhatDoesNotFitAndTakesAnEmptySweep) {
 
 TEST_F(DeskewTest, ARobotThatStandsChangesNothing) {
   const MotionTrack still;
-  sweep_.points.push_back(3, 2, 1, 7);
-  sweep_.time_ns.push_back(-90'000'000);
+  sweep_.push_back({3, 2, 1}, 7, -90'000'000, 0);
   deskew(sweep_, lidar_, still, out_);
   ASSERT_EQ(out_.points.size(), 1U);
   EXPECT_LT((point(0) - lidar_.mount() * Eigen::Vector3d(3, 2, 1)).norm(), 1e-6);

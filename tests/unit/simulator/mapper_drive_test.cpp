@@ -33,9 +33,8 @@ public:
       turn.sweep = Sweep(sweep.points.size());
       turn.sweep.end_ns = sweep.end_ns;
       for (std::size_t i = 0; i < sweep.points.size(); ++i) {
-        turn.sweep.points.push_back(sweep.points.x[i], sweep.points.y[i], sweep.points.z[i],
-                                    sweep.points.reflectivity[i]);
-        turn.sweep.time_ns.push_back(sweep.time_ns[i]);
+        turn.sweep.push_back({sweep.points.x[i], sweep.points.y[i], sweep.points.z[i]},
+                             sweep.points.reflectivity[i], sweep.time_ns[i], sweep.laser[i]);
       }
       sensors->gather();
       take_new(sensors->imu(), imu_until_, turn.imu);

@@ -240,8 +240,7 @@ TEST_F(MapperTest, TakesEmptySweepsAndSweepsOfNonsense) {
   for (const float bad : {std::numeric_limits<float>::quiet_NaN(), 1e30F,
                           -std::numeric_limits<float>::infinity(), 0.0F}) {
     for (int i = 0; i < 500; ++i) {
-      sweep_.points.push_back(bad, bad, 1, bad);
-      sweep_.time_ns.push_back(-1000);
+      sweep_.push_back({bad, bad, 1}, bad, -1000, 0);
     }
   }
   sweep_.end_ns = test::nanoseconds(kSweep * sweeps_ + 0.05);

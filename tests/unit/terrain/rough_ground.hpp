@@ -59,9 +59,9 @@ inline void scan(const RoughGround& ground, const SimpleDrive& drive, const Lida
                                   -std::sin(azimuth) * std::cos(up), std::sin(up));
       const double range = ground.range(at.translation, at.rotation * along, kFarthest);
       if (range <= 0) continue;
-      const Eigen::Vector3f seen = (range * along).cast<float>();
-      sweep.points.push_back(seen.x(), seen.y(), seen.z(), 20);
-      sweep.time_ns.push_back(static_cast<std::int32_t>(std::lround(-before * 1e9)));
+      sweep.push_back((range * along).cast<float>(), 20,
+                      static_cast<std::int32_t>(std::lround(-before * 1e9)),
+                      static_cast<std::size_t>(laser));
     }
   }
 }

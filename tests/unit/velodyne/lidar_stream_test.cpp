@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <random>
 #include <vector>
 
@@ -336,6 +337,29 @@ TEST(LidarStream, ASweepMayBeSwappedAway) {
   }
   EXPECT_GT(most, 28000U);
   EXPECT_LT(most, 29500U);
+}
+
+TEST(LidarStream, NamesTheLaserOfEachPoint) {
+  for (const ReturnMode mode : {ReturnMode::strongest, ReturnMode::dual}) {
+    std::size_t points = 0;
+    LidarStream stream({}, [&](Sweep& sweep) {
+      ASSERT_EQ(sweep.laser.size(), sweep.points.size());
+      points += sweep.points.size();
+      for (std::size_t i = 0; i < sweep.points.size(); ++i) {
+        const float up =
+            std::atan2(sweep.points.z[i], std::hypot(sweep.points.x[i], sweep.points.y[i]));
+        const int laser = sweep.laser[i];
+        const int up_deg = laser % 2 == 0 ? laser - 15 : laser;  // 63-9243 Rev. D, table 9-1
+        ASSERT_NEAR(up * 180 / std::numbers::pi, up_deg, 0.2);
+      }
+    });
+    Sensor sensor;
+    sensor.mode = mode;
+    for (int i = 0; i < 400; ++i, sensor.skip()) {
+      stream.take(sensor.packet().bytes(), kEpoch + sensor.elapsed_ns());
+    }
+    EXPECT_GT(points, 28000U);
+  }
 }
 
 TEST(LidarStream, SurvivesAnyBytes) {
