@@ -33,7 +33,7 @@ constexpr std::array<Study, 9> kStudies = {{
     {"changes", "what each change to the paper's method brought", 24, study_changes},
     {"detection", "detection and kind together, clouds and single sweeps", 65, study_detection},
     {"drives", "simulated drives through every scene against the goals; seeds are those of a scene",
-     2, study_drives},
+     4, study_drives},
 }};
 
 /// Beyond the seeds of `scree train`, so that no study meets a terrain that weights came from.
