@@ -11,6 +11,7 @@ void Solidity::build(PointView cloud, std::span<const BeamCount> beams,
   const std::size_t cells = surface.columns() * surface.rows();
   ended_.assign(cells, 0);
   passed_.assign(cells, 0);
+  scatter_.assign(cells, 0);
   around_.assign(cells, 1);
   for (std::size_t i = 0; i < beams.size(); ++i) {
     const float x = cloud.x[i], y = cloud.y[i];
@@ -20,6 +21,7 @@ void Solidity::build(PointView cloud, std::span<const BeamCount> beams,
     const std::size_t cell = surface.cell_at(x, y);
     ended_[cell] += static_cast<float>(beams[i].ended);
     passed_[cell] += static_cast<float>(beams[i].passed);
+    scatter_[cell] += beams[i].scatter;
   }
   if (!beams.empty()) spread(surface.columns());
 }

@@ -161,12 +161,13 @@ void Surroundings::measure_edge(Features& features, const GroundSurface& surface
 void Surroundings::measure_solidity(Features& features, const Solidity& solidity) {
   constexpr float kSolid = 0.7F;
   const float half = half_height(features);
-  float solid = 0, ended = 0, top_ended = 0, top_passed = 0;
+  float solid = 0, ended = 0, scatter = 0, top_ended = 0, top_passed = 0;
   values_.clear();
   for (const std::uint32_t cell : cells_) {
     if (solidity.of(cell) >= kSolid) ++solid;
     values_.push_back(solidity.around(cell));
     ended += solidity.ended(cell);
+    scatter += solidity.scatter(cell);
     if (std::max(highest_[cell], -lowest_[cell]) < half) continue;
     top_ended += solidity.ended(cell);
     top_passed += solidity.passed(cell);
@@ -175,6 +176,7 @@ void Surroundings::measure_solidity(Features& features, const Solidity& solidity
   features[top_solidity] = Solidity::share(top_ended, top_passed);
   features[core_solidity] = quantile(values_, 0.75);
   features[beam_count] = ended;
+  features[range_scatter] = scatter / std::max(ended, 1.0F);
 }
 
 }  // namespace scree

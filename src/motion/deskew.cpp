@@ -1,5 +1,7 @@
 #include "scree/motion/deskew.hpp"
 
+#include "scree/motion/range_scatter.hpp"
+
 namespace scree {
 
 void deskew(const Sweep& sweep, const LidarSettings& lidar, const MotionTrack& track,
@@ -9,9 +11,8 @@ void deskew(const Sweep& sweep, const LidarSettings& lidar, const MotionTrack& t
   const Eigen::Vector3f translation = mount.translation.cast<float>();
   const auto nearest = static_cast<float>(lidar.min_range * lidar.min_range);
   const auto farthest = static_cast<float>(lidar.max_range * lidar.max_range);
-  out.points.clear();
-  out.origins.clear();
-  out.dropped = 0;
+  out.clear();
+  RangeScatter scatter;
   // The lasers of a firing share their time, nearly; a place serves until the time changes.
   std::int32_t placed_ns = 1;
   MotionTrack::Place lidar_at;
@@ -31,6 +32,7 @@ void deskew(const Sweep& sweep, const LidarSettings& lidar, const MotionTrack& t
       continue;
     }
     out.origins.push_back(lidar_at.translation);
+    scatter.add(sweep.laser[i], seen, out.scatter);
   }
 }
 

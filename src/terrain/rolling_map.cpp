@@ -146,6 +146,7 @@ void RollingMap::add(const DeskewedSweep& sweep, const Pose& pose, std::int64_t 
     voxel->seen_ns = end_ns;
     voxel->passed = 0;
     ++voxel->beams.ended;
+    voxel->beams.scatter += sweep.scatter[i];
   }
   see_through(sweep, rotation, translation, reach);
   forget(pose);
@@ -216,6 +217,7 @@ void RollingMap::fade_beams() {
   for (Voxel& voxel : voxels_) {
     voxel.beams.ended *= kKept;
     voxel.beams.passed *= kKept;
+    voxel.beams.scatter *= kKept;
   }
 }
 

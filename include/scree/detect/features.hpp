@@ -31,6 +31,7 @@ enum Feature : std::size_t {
   steepest,       ///< of its cells: upper tenth of the steepest slope in each, metres per metre
   edge_height,    ///< median height or depth of its cells next to seen ground, metres
   edge_share,     ///< of those cells: that reach half its height
+  range_scatter,  ///< of the beams that ended in it: mean, see RangeScatter, metres
   kFeatures
 };
 inline constexpr std::size_t kPaperFeatures = 5;

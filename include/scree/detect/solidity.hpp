@@ -15,7 +15,7 @@ namespace scree {
 class Solidity {
 public:
   explicit Solidity(std::size_t max_cells)
-      : ended_(max_cells), passed_(max_cells), around_(max_cells) {}
+      : ended_(max_cells), passed_(max_cells), scatter_(max_cells), around_(max_cells) {}
 
   /// Counts the beams of the points that stand between two heights above the surface, metres.
   /// @param beams of each point of the cloud; empty where nothing is known of them
@@ -25,6 +25,7 @@ public:
   // Of a cell of the raster; without any beam all is solid.
   float ended(std::size_t cell) const { return ended_[cell]; }
   float passed(std::size_t cell) const { return passed_[cell]; }
+  float scatter(std::size_t cell) const { return scatter_[cell]; }
   float of(std::size_t cell) const { return share(ended_[cell], passed_[cell]); }
   /// Whether beams ended on what stands in it, and hardly any went on.
   bool stops_all(std::size_t cell) const { return ended_[cell] > 0 && of(cell) >= kAll; }
@@ -40,7 +41,7 @@ private:
 
   void spread(std::size_t columns);
 
-  FixedVector<float> ended_, passed_, around_;
+  FixedVector<float> ended_, passed_, scatter_, around_;
 };
 
 }  // namespace scree

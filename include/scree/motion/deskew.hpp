@@ -11,9 +11,18 @@ namespace scree {
 struct DeskewedSweep {
   PointCloud points;                     ///< in `base` at the sweep's end
   FixedVector<Eigen::Vector3f> origins;  ///< the lidar's origin at each point's time, same frame
+  FixedVector<float> scatter;            ///< of each point, see RangeScatter; metres
   std::size_t dropped = 0;
 
-  explicit DeskewedSweep(std::size_t capacity) : points(capacity), origins(capacity) {}
+  explicit DeskewedSweep(std::size_t capacity)
+      : points(capacity), origins(capacity), scatter(capacity) {}
+
+  void clear() {
+    points.clear();
+    origins.clear();
+    scatter.clear();
+    dropped = 0;
+  }
 };
 
 /// Moves every point of a sweep, in the `lidar` frame, to `base` at the sweep's end by the motion

@@ -26,7 +26,8 @@ protected:
       if (x > 1.5F && y > 1.5F) z = 2.5F;
       cloud_.push_back(x, y, z, 0);
       const int ended = count(random), passed = count(random);
-      beams_.push_back({static_cast<float>(ended), static_cast<float>(passed)});
+      beams_.push_back({static_cast<float>(ended), static_cast<float>(passed),
+                        0.01F * static_cast<float>(ended % 7)});
     }
     surface_.build(cloud_, {.cell_size = kCell,
                             .cell_points = 1,
@@ -46,16 +47,18 @@ protected:
 
 TEST_F(SolidityTest, CountsWhatStandsOnTheGroundCellByCell) {
   solidity_.build(cloud_, beams_, surface_, kLowest, kHighest);
-  std::vector<float> ended(cells()), passed(cells());
+  std::vector<float> ended(cells()), passed(cells()), scatter(cells());
   for (std::size_t i = 0; i < cloud_.size(); ++i) {
     if (cloud_.z[i] != 0.3F) continue;
     ended[surface_.cell_at(cloud_.x[i], cloud_.y[i])] += beams_[i].ended;
     passed[surface_.cell_at(cloud_.x[i], cloud_.y[i])] += beams_[i].passed;
+    scatter[surface_.cell_at(cloud_.x[i], cloud_.y[i])] += beams_[i].scatter;
   }
   int counted = 0;
   for (std::size_t cell = 0; cell < cells(); ++cell) {
     ASSERT_EQ(solidity_.ended(cell), ended[cell]);
     ASSERT_EQ(solidity_.passed(cell), passed[cell]);
+    ASSERT_EQ(solidity_.scatter(cell), scatter[cell]);
     if (ended[cell] == 0) {
       ASSERT_EQ(solidity_.around(cell), 1) << "nothing stands there";
       continue;

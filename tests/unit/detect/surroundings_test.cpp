@@ -70,11 +70,12 @@ TEST(Surroundings, MeasuresTheShareOfTheBeamsThatEnded) {
   EXPECT_EQ(unknown[top_solidity], 1);
   EXPECT_EQ(unknown[core_solidity], 1);
   EXPECT_EQ(unknown[beam_count], 0);
+  EXPECT_EQ(unknown[range_scatter], 0);
 
   // Grass around a rock: the higher half is solid.
   std::vector<BeamCount> beams;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    beams.push_back(cloud.x[i] < 0 ? BeamCount{100, 0} : BeamCount{100, 300});
+    beams.push_back(cloud.x[i] < 0 ? BeamCount{100, 0, 1} : BeamCount{100, 300, 5});
   }
   const Features half = features_of(cloud, beams);
   EXPECT_NEAR(half[solid_share], 0.5, 0.1);
@@ -82,12 +83,14 @@ TEST(Surroundings, MeasuresTheShareOfTheBeamsThatEnded) {
   EXPECT_GT(half[core_solidity], 0.95);
   const auto above = std::ranges::count_if(cloud.z, [](float z) { return z > 0; });
   EXPECT_NEAR(half[beam_count] / (100 * static_cast<float>(above)), 1, 0.05);
+  EXPECT_NEAR(half[range_scatter], 0.03, 0.003);
 
-  for (BeamCount& count : beams) count = {100, 300};
+  for (BeamCount& count : beams) count = {100, 300, 5};
   const Features grass = features_of(cloud, beams);
   EXPECT_EQ(grass[solid_share], 0);
   EXPECT_NEAR(grass[top_solidity], 0.25, 0.01);
   EXPECT_NEAR(grass[core_solidity], 0.25, 0.01);
+  EXPECT_NEAR(grass[range_scatter], 0.05, 1e-4);
 }
 
 TEST(Surroundings, GroundBelowItsEdgeMakesARockNoLessSteep) {

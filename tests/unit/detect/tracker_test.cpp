@@ -28,7 +28,7 @@ TEST_F(TrackerTest, AnObstacleAppearsOnceItWasSeenAgainAndStaysAsItWasFoundLast)
 }
 
 TEST_F(TrackerTest, WhatIsHardlyBelievedNeverAppears) {
-  EXPECT_EQ(updates_until(1, {at(3, 1, 0.3F)}), 100);
+  EXPECT_EQ(updates_until(1, {at(3, 1, 0.25F)}), 100);
 }
 
 TEST_F(TrackerTest, IdsStayWithTheirObstaclesWhateverTheOrder) {
@@ -111,7 +111,7 @@ TEST_F(TrackerTest, TheMiddleOfAHoleIsEmptyAsLongAsItIsThere) {
 // A confidence that wavers about a threshold does not make the obstacle come and go.
 TEST_F(TrackerTest, DoesNotFlicker) {
   std::mt19937 random(42);
-  std::uniform_real_distribution<float> wavering(0.3F, 0.9F);
+  std::uniform_real_distribution<float> wavering(0.1F, 0.8F);
   update({at(3, 1)}, 5);
   int changes = 0, raw_changes = 0;
   bool was_listed = true, was_sure = true;

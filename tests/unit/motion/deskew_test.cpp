@@ -112,6 +112,7 @@ TEST_F(DeskewTest, LeavesOutWhatIsNearOrFarOrNoNumber) {
   }
   follow();
   EXPECT_EQ(out_.points.size(), 3U);
+  EXPECT_EQ(out_.scatter.size(), 3U);
   EXPECT_EQ(out_.origins.size(), 3U);
   EXPECT_EQ(out_.dropped, 0U);
 }
@@ -121,6 +122,7 @@ TEST_F(DeskewTest, CountsWhatDoesNotFitAndTakesAnEmptySweep) {
   scan([](const Eigen::Vector3d&, const Eigen::Vector3d&) { return 5; });
   follow();
   EXPECT_EQ(out_.points.size(), 100U);
+  EXPECT_EQ(out_.scatter.size(), 100U);
   EXPECT_EQ(out_.origins.size(), 100U);
   EXPECT_EQ(out_.dropped, 2900U);
   sweep_.clear();

@@ -152,6 +152,7 @@ TEST_F(RegistrationTest, KeyPointsAreChosenByTheirNormals) {
       const Eigen::Vector3f seen = Eigen::Vector3d(x - 0.05, y, ridge(x, y)).cast<float>();
       sweep_.points.push_back(seen.x(), seen.y(), seen.z(), 20);
       sweep_.origins.push_back(Eigen::Vector3f(0, 0, 1));
+      sweep_.scatter.push_back(0);
     }
   }
   registration_.align(sweep_, map_, filter_);
@@ -197,6 +198,7 @@ TEST_F(RegistrationTest, ADitchLeavesTheDirectionAlongIt) {
       const Eigen::Vector3f seen = (place - Eigen::Vector3d(0.07, 0.06, 0)).cast<float>();
       sweep_.points.push_back(seen.x(), seen.y(), seen.z(), 20);
       sweep_.origins.push_back(Eigen::Vector3f(0, 0, 1));
+      sweep_.scatter.push_back(0);
     }
   }
   registration_.align(sweep_, map_, filter_);
@@ -213,8 +215,7 @@ TEST_F(RegistrationTest, DoesNothingWithoutAMapOrWithoutPoints) {
   Registration::Outcome outcome = align(rough, {{0.05, 0, 0}, Eigen::Quaterniond::Identity()});
   EXPECT_EQ(outcome.key_points, 0) << "no map";
   learn(rough);
-  sweep_.points.clear();
-  sweep_.origins.clear();
+  sweep_.clear();
   outcome = registration_.align(sweep_, map_, filter_);
   EXPECT_EQ(outcome.key_points, 0) << "no points";
   EXPECT_EQ(outcome.rounds, 0);

@@ -21,8 +21,7 @@ public:
     std::normal_distribution<double> noise(0, 0.005);
     std::uniform_real_distribution<double> shake(-0.0025, 0.0025);
     for (int i = 0; i < sweeps; ++i) {
-      sweep_.points.clear();
-      sweep_.origins.clear();
+      sweep_.clear();
       const double up_by = shake(random_), side_by = shake(random_);
       for (int row = 0; row < 90; ++row) {
         for (int column = 0; column < 120; ++column) {
@@ -33,6 +32,7 @@ public:
           const Eigen::Vector3f hit = (kLidar + range * along).cast<float>();
           sweep_.points.push_back(hit.x(), hit.y(), hit.z(), 20);
           sweep_.origins.push_back(kLidar.cast<float>());
+          sweep_.scatter.push_back(0);
         }
       }
       map_.add(sweep_, Pose(), now_ns_ += 100'000'000);

@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::int64_t kStart = 1'598'612'523'000'000'000, kTurnNs = 100'000'000;
 constexpr double kVoxel = 0.05;
+constexpr float kScatter = 0.03F;
 
 using Cell = std::tuple<int, int, int>;
 
@@ -40,11 +41,11 @@ protected:
         (pose_.rotation.conjugate() * (point - pose_.translation)).cast<float>();
     sweep_.points.push_back(seen.x(), seen.y(), seen.z(), 20);
     sweep_.origins.push_back(Eigen::Vector3f(0, 0, 1));
+    sweep_.scatter.push_back(kScatter);
   }
   void end_sweep(double reach = std::numeric_limits<double>::infinity()) {
     map_.add(sweep_, pose_, now_ns_ += kTurnNs, reach);
-    sweep_.points.clear();
-    sweep_.origins.clear();
+    sweep_.clear();
   }
   void wait(int sweeps) {
     for (int i = 0; i < sweeps; ++i) end_sweep();
@@ -235,6 +236,7 @@ TEST_F(RollingMapTest, CountsTheBeamsThatEndedInAVoxelAndThoseThatPassedIt) {
   const BeamCount through = beams_of(40, place + 0.5 * along + below);
   EXPECT_EQ(through.ended, 40);
   EXPECT_EQ(through.passed, 80);
+  EXPECT_NEAR(through.scatter, 40 * kScatter, 1e-4);
   EXPECT_EQ(beams_of(40, place + 0.5 * along - below).passed, 0) << "over it, as over a rock";
   EXPECT_EQ(beams_of(40, place + 0.08 * along + below).passed, 0) << "on the same surface";
   EXPECT_EQ(beams_of(40, place + 0.5 * along + below + beside).passed, 0) << "past it";
@@ -244,6 +246,7 @@ TEST_F(RollingMapTest, CountsTheBeamsThatEndedInAVoxelAndThoseThatPassedIt) {
   EXPECT_GT(after_minutes.ended, 400);
   EXPECT_NEAR(after_hours.ended / after_minutes.ended, 1, 0.2);
   EXPECT_NEAR(after_hours.passed / after_hours.ended, 2, 1e-3) << "both fade alike";
+  EXPECT_NEAR(after_hours.scatter / after_hours.ended, kScatter, 1e-4);
 }
 
 TEST_F(RollingMapTest, DropsAndCountsWhatFindsNoRoomAndRecovers) {

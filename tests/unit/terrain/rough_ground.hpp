@@ -69,8 +69,7 @@ inline void scan(const RoughGround& ground, const SimpleDrive& drive, const Lida
 /// Points about the robot on a grid, in `base` at `pose`, as if all were seen from 1 m above it.
 inline void look(const RoughGround& ground, const Pose& pose, double reach, double step,
                  DeskewedSweep& sweep) {
-  sweep.points.clear();
-  sweep.origins.clear();
+  sweep.clear();
   for (double x = -reach; x <= reach; x += step) {
     for (double y = -reach; y <= reach; y += step) {
       const double wx = pose.translation.x() + x, wy = pose.translation.y() + y;
@@ -79,6 +78,7 @@ inline void look(const RoughGround& ground, const Pose& pose, double reach, doub
           (pose.rotation.conjugate() * (place - pose.translation)).cast<float>();
       sweep.points.push_back(seen.x(), seen.y(), seen.z(), 20);
       sweep.origins.push_back(Eigen::Vector3f(0, 0, 1));
+      sweep.scatter.push_back(0);
     }
   }
 }

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "scree/core/fixed_vector.hpp"
+
+namespace scree {
+
+/// How much the ranges of neighbouring shots of a laser scatter. On a rock they follow one another
+/// however steep it is; among blades of grass each shot goes as deep as it happens to (compare
+/// Castano and Matthies, "Foliage discrimination using a rotating ladar", ICRA 2003).
+class RangeScatter {
+public:
+  static constexpr float kMost = 0.1F;  ///< metres; of a shot without neighbours, too
+
+  /// The next point of a turn. Of three neighbouring shots the middle one is off the straight line
+  /// between the others; a point's scatter is the least of that over the threes it is in, so that
+  /// an edge beside it does not count.
+  /// @param seen metres, `lidar` frame
+  /// @param scatter of the points so far, metres; gets one more
+  void add(std::uint8_t laser, const Eigen::Vector3f& seen, FixedVector<float>& scatter);
+
+private:
+  struct Shot {
+    Eigen::Vector3f along = Eigen::Vector3f::Zero();
+    float range = 0, step = 0;  ///< metres; rad from the one before, 0 where that is no neighbour
+    std::size_t index = 0;
+  };
+  static constexpr std::size_t kLasers = 16;
+  struct Latest {
+    Shot last, before;
+  };
+  std::array<Latest, kLasers> lasers_{};
+};
+
+}  // namespace scree
