@@ -10,8 +10,6 @@
 namespace scree {
 namespace {
 
-/// Beams are followed for the last metres before their hit: there, near the ground, things stand.
-constexpr float kSeenThrough = 4;
 /// Beams that went through a voxel since it was hit last: it has moved away.
 constexpr std::uint16_t kMostPassed = 8;
 
@@ -23,6 +21,7 @@ RollingMap::RollingMap(const MapSettings& settings)
       voxels_(static_cast<std::size_t>(settings.max_voxels)),
       index_(std::bit_ceil(2 * voxels_.capacity())),
       mask_(index_.capacity() - 1),
+      in_block_(Blocks::kCells),
       cloud_(voxels_.capacity()),
       beams_(voxels_.capacity()) {
   clear();
@@ -31,6 +30,7 @@ RollingMap::RollingMap(const MapSettings& settings)
 void RollingMap::clear() {
   voxels_.clear();
   index_.assign(index_.capacity(), 0);
+  in_block_.assign(in_block_.capacity(), 0);
   cloud_.clear();
   beams_.clear();
   free_space_.clear();
@@ -71,11 +71,13 @@ RollingMap::Voxel* RollingMap::find_or_add(const Key& key) {
   voxel.slot = static_cast<std::uint32_t>(slot);
   voxels_.push_back(voxel);
   index_[slot] = static_cast<std::uint32_t>(voxels_.size());
+  ++voxels_around(key);
   return &voxels_.back();
 }
 
 /// Takes a voxel out; the last one takes its place.
 void RollingMap::remove(std::size_t index) {
+  --voxels_around(voxels_[index].key);
   // What follows in the same run of slots moves up, so that no search ends at the gap.
   std::size_t gap = voxels_[index].slot;
   for (std::size_t slot = (gap + 1) & mask_; index_[slot] != 0; slot = (slot + 1) & mask_) {
@@ -106,6 +108,7 @@ void RollingMap::recentre(const Pose& pose) {
     return static_cast<std::int16_t>(std::lround(metres / settings_.voxel));
   };
   index_.assign(index_.capacity(), 0);
+  in_block_.assign(in_block_.capacity(), 0);
   for (std::size_t i = 0; i < voxels_.size(); ++i) {
     Voxel& voxel = voxels_[i];
     voxel.mean -= shift.cast<float>();
@@ -115,6 +118,7 @@ void RollingMap::recentre(const Pose& pose) {
     const std::size_t slot = slot_of(voxel.key);
     index_[slot] = static_cast<std::uint32_t>(i + 1);
     voxel.slot = static_cast<std::uint32_t>(slot);
+    ++voxels_around(voxel.key);
   }
 }
 
@@ -153,10 +157,9 @@ void RollingMap::add(const DeskewedSweep& sweep, const Pose& pose, std::int64_t 
   gather_cloud(translation);
 }
 
-/// Follows some of the beams, others each sweep, to shortly before what they hit; farther off,
-/// through the last metres of where obstacles are searched for, too. What has moved away must stand
-/// clear of the hit, for poses err; grass is counted nearer to it. Through grass as many beams pass
-/// below a blade as above it, over a rock only above: those below count for both.
+/// Follows some of the beams, others each sweep, to shortly before what they hit. What has moved
+/// away must stand clear of the hit, for poses err; grass is counted nearer to it. Through grass as
+/// many beams pass below a blade as above it, over a rock only above: those below count for both.
 void RollingMap::see_through(const DeskewedSweep& sweep, const Eigen::Matrix3f& rotation,
                              const Eigen::Vector3f& translation, float reach) {
   constexpr std::uint16_t kEvery = 4;
@@ -179,9 +182,10 @@ void RollingMap::see_through(const DeskewedSweep& sweep, const Eigen::Matrix3f& 
     }
     std::uint32_t last = 0;
     const float grass_end = std::min(range - kFartherOn, reach);
-    const float begin = std::max(0.0F, std::min(end, search_reach) - kSeenThrough);
-    for (float way = begin; way < grass_end; way += voxel_size) {
-      const std::uint32_t number = index_[slot_of(key_of(from + way * along))];
+    for (float way = 0; way < grass_end; way += voxel_size) {
+      const Key key = key_of(from + way * along);
+      if (voxels_around(key) == 0) continue;
+      const std::uint32_t number = index_[slot_of(key)];
       if (number == 0 || number == last) continue;
       last = number;
       Voxel& voxel = voxels_[number - 1];
@@ -237,16 +241,21 @@ void RollingMap::forget(const Pose& pose) {
   }
 }
 
-/// Seen by two sweeps, in the voxel itself or next to it.
+/// Seen by two sweeps in the voxel itself, or by three in it and next to it: grains of dust meet by
+/// chance.
 bool RollingMap::is_confirmed(const Voxel& voxel) const {
   if (voxel.sweeps > 1) return true;
+  std::uint32_t other_sweep = voxel.last_sweep;
   for (int x = -1; x <= 1; ++x) {
     for (int y = -1; y <= 1; ++y) {
       for (int z = -1; z <= 1; ++z) {
         if (x == 0 && y == 0 && z == 0) continue;
         const Voxel* const near = find(voxel.key.beside(x, y, z));
         if (near == nullptr) continue;
-        if (near->sweeps > 1 || near->last_sweep != voxel.last_sweep) return true;
+        if (near->sweeps > 1) return true;
+        if (near->last_sweep == voxel.last_sweep || near->last_sweep == other_sweep) continue;
+        if (other_sweep != voxel.last_sweep) return true;
+        other_sweep = near->last_sweep;
       }
     }
   }

@@ -13,6 +13,7 @@
 #include "scree/core/pose.hpp"
 #include "scree/core/sight.hpp"
 #include "scree/motion/deskew.hpp"
+#include "scree/terrain/endless_box.hpp"
 #include "scree/terrain/free_space.hpp"
 
 namespace scree {
@@ -68,7 +69,14 @@ private:
     float reflectivity = 0;
   };
 
+  /// Cubes of 4 x 4 x 4 voxels; those far from one another share one.
+  using Blocks = EndlessBox<128, 32>;
+
   Key key_of(const Eigen::Vector3f& point) const;
+  /// Voxels in the block that holds a place.
+  std::uint32_t& voxels_around(const Key& key) {
+    return in_block_[Blocks::Place{key.x >> 2, key.y >> 2, key.z >> 2}.index()];
+  }
   /// Where in the index a voxel stands, or the free place where it would.
   std::size_t slot_of(const Key& key) const;
   std::size_t first_slot(const Key& key) const;
@@ -89,6 +97,7 @@ private:
   FixedVector<Voxel> voxels_;
   FixedVector<std::uint32_t> index_;  // open addressing; the index of a voxel plus one, 0 is free
   std::size_t mask_;
+  FixedVector<std::uint32_t> in_block_;  // voxels; the air is empty, and beams pass it quickly
   FreeSpace free_space_;
   PointCloud cloud_;
   FixedVector<BeamCount> beams_;

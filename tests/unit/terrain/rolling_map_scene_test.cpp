@@ -103,6 +103,26 @@ TEST(RollingMapScene, WhatMovedAwayIsForgottenAndWhatStandsStays) {
   EXPECT_EQ(scene.map().sight({3, 0, 0.3}), Sight::empty);
 }
 
+// The beams that show that it is gone end far behind where it stood.
+TEST(RollingMapScene, WhatMovedAwayInTheOpenIsForgotten) {
+  Scene scene;
+  scene.box_height = 0.85;
+  scene.look(20);
+  const auto upper_part = [&] {
+    const PointCloud& cloud = scene.map().cloud();
+    int points = 0;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      if (cloud.z[i] > 0.55F && cloud.z[i] < 0.7F) ++points;
+    }
+    return points;
+  };
+  const int with = upper_part();
+  EXPECT_GT(with, 30);
+  scene.has_box = false;
+  scene.look(60);
+  EXPECT_LT(upper_part(), 0.05 * with);
+}
+
 TEST(RollingMapScene, CountsTheBeamsThatGrassLetsPass) {
   Scene box, sparse, dense;
   sparse.blades = 2;

@@ -113,25 +113,42 @@ TEST_F(RollingMapTest, ASweepsReachIsKept) {
 }
 
 TEST_F(RollingMapTest, APointThatNoOtherSweepConfirmsStaysOutAndGoes) {
-  const Eigen::Vector3d noise(3, 1, 1.5), twice(3, -1, 1.5), beside(3, 4, 1.5);
+  const Eigen::Vector3d noise(3, 1, 1.5), twice(3, -1, 1.5), beside(3, 4, 1.5), dust(3, -4, 1.5);
+  const Eigen::Vector3d right(kVoxel, 0, 0), up(0, 0, kVoxel);
   see(noise);
   see(twice);
   see(beside);
+  see(dust);
   end_sweep();
   EXPECT_EQ(map_.cloud().size(), 0U);
-  EXPECT_EQ(map_.voxels(), 3U);
+  EXPECT_EQ(map_.voxels(), 4U);
   wait(10);
   see(twice);
-  see(beside + Eigen::Vector3d(kVoxel, 0, 0));
+  see(beside + right);
+  see(dust + right);
+  end_sweep();
+  see(beside + up);
   end_sweep();
   EXPECT_FALSE(has_near(noise));
   EXPECT_TRUE(has_near(twice));
-  EXPECT_TRUE(has_near(beside));
-  EXPECT_EQ(map_.voxels(), 4U);
+  EXPECT_TRUE(has_near(beside)) << "three sweeps";
+  EXPECT_FALSE(has_near(dust)) << "two grains beside one another";
+  EXPECT_EQ(map_.voxels(), 7U);
   wait(60);
-  EXPECT_EQ(map_.voxels(), 3U) << "the noise";
+  EXPECT_EQ(map_.voxels(), 4U) << "noise and dust are gone";
   EXPECT_TRUE(has_near(twice));
   EXPECT_TRUE(has_near(beside));
+}
+
+TEST_F(RollingMapTest, ASweepConfirmsWithASurfaceThatTwoHaveSeen) {
+  const Eigen::Vector3d surface(3, 0, 0.5), right(kVoxel, 0, 0);
+  for (int i = 0; i < 2; ++i) {
+    see(surface);
+    end_sweep();
+  }
+  see(surface + right);
+  end_sweep();
+  EXPECT_TRUE(has_near(surface + right));
 }
 
 TEST_F(RollingMapTest, WhatIsFarIsGatheredAndHandedOutOnceItIsNear) {
