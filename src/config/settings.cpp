@@ -27,6 +27,7 @@ DetectSettings DetectSettings::for_map() {
   detect.max_obstacles = 512;
   detect.voxel_grid = false;
   detect.ground_trend = 2;
+  detect.kernel_shared = 0.03;
   detect.cluster_method = ClusterMethod::regions;
   detect.cluster_tolerance = 0.30;
   detect.network = "network_map.txt";

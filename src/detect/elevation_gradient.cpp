@@ -95,13 +95,28 @@ void ElevationGradient::compute(const PlaneCells& cells, std::span<const std::ui
   const Kernel kernel{kOffsetX * spacing, kOffsetY * spacing, square,
                       -decay * exp.scale, exp.squarings,      min_neighbours};
   const float share = 1.0F / (8.0F * spacing);
+  const PointCloud& points = cells.points();
+  const float shared = shared_within * shared_within;
+  const auto is_wanted = [&](std::uint32_t i) { return wanted.empty() || wanted[i] != 0; };
   cells.for_each_cell([&](Run cell, std::span<const Run> neighbourhood) {
     for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
-      if (!wanted.empty() && wanted[i] == 0) {
+      if (!is_wanted(i)) {
         slope_x[i] = slope_y[i] = kUnknown;
         continue;
       }
-      const Slope slope = sobel(kernel, cells.points(), i, neighbourhood);
+      // A slope depends on the place in the plane alone, so a column of points has one.
+      std::uint32_t same = shared > 0 ? cell.begin : i;
+      const auto is_near = [&](std::uint32_t j) {
+        const float dx = points.x[j] - points.x[i], dy = points.y[j] - points.y[i];
+        return dx * dx + dy * dy < shared;
+      };
+      while (same < i && !(is_wanted(same) && is_near(same))) ++same;
+      if (same < i) {
+        slope_x[i] = slope_x[same];
+        slope_y[i] = slope_y[same];
+        continue;
+      }
+      const Slope slope = sobel(kernel, points, i, neighbourhood);
       slope_x[i] = slope.x * share;
       slope_y[i] = slope.y * share;
     }

@@ -71,6 +71,9 @@ void for_each_detect_key(std::string_view table, Detect& detect, Visit&& visit) 
   key("kernel_neighbours", detect.kernel_neighbours, "points", 1, 1000,
       "least points at each of the eight positions for a gradient: more means fewer gradients on "
       "sparse ground, and better ones");
+  key("kernel_shared", detect.kernel_shared, "m", 0, 1,
+      "points nearer to one another in the plane share a gradient: faster where points stand above "
+      "one another; 0: each has its own");
   key("edge_threshold", detect.edge_threshold, "m/m", 0, 100,
       "least slope of an edge point: lower finds flatter obstacles and more slopes of the ground");
   key("suppression", detect.suppression, "", 0, 0,

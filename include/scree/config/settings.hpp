@@ -193,6 +193,7 @@ struct DetectSettings {
   double kernel_radius = 0.11;
   double kernel_bandwidth = 2.0;
   int kernel_neighbours = 1;
+  double kernel_shared = 0;
   double edge_threshold = 0.35;
 
   bool suppression = true;

@@ -9,10 +9,11 @@ namespace scree {
 
 /// Gaussian-kernel Sobel operator on scattered points (paper eq. 1-4, fig. 2-3).
 struct ElevationGradient {
-  float spacing;       ///< d: distance of the eight positions around a point, metres
-  float radius;        ///< r: reach of the kernel at each position, metres
-  float bandwidth;     ///< standard deviation of the kernel, metres; the paper prints 2r
-  int min_neighbours;  ///< least points within `radius` of each position
+  float spacing;            ///< d: distance of the eight positions around a point, metres
+  float radius;             ///< r: reach of the kernel at each position, metres
+  float bandwidth;          ///< standard deviation of the kernel, metres; the paper prints 2r
+  int min_neighbours;       ///< least points within `radius` of each position
+  float shared_within = 0;  ///< points nearer to one another in the plane share a slope, metres
 
   /// How far from a point its neighbours matter; give it to PlaneCells::build().
   float reach() const { return spacing + radius; }

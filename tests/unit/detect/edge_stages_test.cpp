@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <set>
 #include <vector>
 
 #include "detect/clouds.hpp"
@@ -104,6 +105,52 @@ TEST(Gradient, OfAPlaneIsItsSlope) {
   EXPECT_GT(known, 10'000);
   EXPECT_NEAR(sum_x / known, 0.3, 0.003);
   EXPECT_NEAR(sum_y / known, -0.1, 0.003);
+}
+
+TEST(Gradient, PointsAboveOneAnotherMayShareIt) {
+  // Every point has three more above it, some millimetres aside.
+  const PointCloud plane = test::scattered(5'000, 2, 0);
+  PointCloud cloud(4 * plane.size());
+  for (std::size_t i = 0; i < plane.size(); ++i) {
+    const float ground = 0.4F * std::sin(2 * plane.x[i]) * plane.y[i];
+    for (int k = 0; k < 4; ++k) {
+      const float up = static_cast<float>(k);
+      cloud.push_back(plane.x[i] + 0.002F * up, plane.y[i], ground + 0.1F * up, 0);
+    }
+  }
+  ElevationGradient gradient{0.1F, 0.11F, 0.22F, 1};
+  PlaneCells cells(cloud.size());
+  cells.build(cloud, gradient.reach());
+  const Slopes own = slopes_of(cells, gradient);
+  gradient.shared_within = 0.01F;
+  const Slopes shared = slopes_of(cells, gradient);
+  std::size_t known = 0, alike = 0;
+  double difference = 0;
+  std::set<float> distinct_own, distinct_shared;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (std::isnan(own.x[i]) || std::isnan(shared.x[i])) continue;
+    ++known;
+    difference += std::hypot(own.x[i] - shared.x[i], own.y[i] - shared.y[i]);
+    distinct_own.insert(own.x[i]);
+    distinct_shared.insert(shared.x[i]);
+  }
+  ASSERT_GT(known, 10'000U);
+  EXPECT_LT(difference / static_cast<double>(known), 0.03);
+  EXPECT_LT(distinct_shared.size(), 0.4 * static_cast<double>(distinct_own.size()));
+
+  // What is not wanted lends its slope to nobody.
+  std::vector<std::uint8_t> wanted(cells.size(), 0);
+  for (std::size_t i = 0; i < wanted.size(); i += 3) wanted[i] = 1;
+  Slopes some{std::vector<float>(cells.size()), std::vector<float>(cells.size())};
+  gradient.compute(cells, wanted, some.x, some.y);
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    if (wanted[i] == 0) {
+      ASSERT_TRUE(std::isnan(some.x[i]));
+    } else if (!std::isnan(some.x[i]) && !std::isnan(own.x[i])) {
+      alike += std::hypot(some.x[i] - own.x[i], some.y[i] - own.y[i]) < 0.1F ? 1U : 0U;
+    }
+  }
+  EXPECT_GT(alike, known / 4);
 }
 
 TEST(PlaneCells, WithoutSomePointsTheyAreAsBuiltFromTheOthers) {
