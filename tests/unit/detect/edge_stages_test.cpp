@@ -124,7 +124,7 @@ TEST(Gradient, PointsAboveOneAnotherMayShareIt) {
   const Slopes own = slopes_of(cells, gradient);
   gradient.shared_within = 0.01F;
   const Slopes shared = slopes_of(cells, gradient);
-  std::size_t known = 0, alike = 0;
+  std::size_t known = 0;
   double difference = 0;
   std::set<float> distinct_own, distinct_shared;
   for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -143,14 +143,17 @@ TEST(Gradient, PointsAboveOneAnotherMayShareIt) {
   for (std::size_t i = 0; i < wanted.size(); i += 3) wanted[i] = 1;
   Slopes some{std::vector<float>(cells.size()), std::vector<float>(cells.size())};
   gradient.compute(cells, wanted, some.x, some.y);
+  std::size_t asked = 0, alike = 0;
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     if (wanted[i] == 0) {
       ASSERT_TRUE(std::isnan(some.x[i]));
-    } else if (!std::isnan(some.x[i]) && !std::isnan(own.x[i])) {
+    } else if (!std::isnan(own.x[i])) {
+      ++asked;
       alike += std::hypot(some.x[i] - own.x[i], some.y[i] - own.y[i]) < 0.1F ? 1U : 0U;
     }
   }
-  EXPECT_GT(alike, known / 4);
+  EXPECT_GT(asked, known / 4);
+  EXPECT_GT(alike, 0.9 * static_cast<double>(asked));
 }
 
 TEST(PlaneCells, WithoutSomePointsTheyAreAsBuiltFromTheOthers) {
