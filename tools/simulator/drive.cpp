@@ -80,6 +80,7 @@ SimulatedLidarSettings draw_lidar(const CaptureSettings& settings, const LidarSe
     lidar.clock_offset_ns = static_cast<std::int64_t>(random.uniform(0, 3.5e12));
     lidar.clock_skew = random.uniform(-20e-6, 20e-6);
   }
+  if (random.chance(0.3)) lidar.dust_puffs = random.uniform(4, 15);
   if (settings.dual) lidar.mode = velodyne::ReturnMode::dual;
   return lidar;
 }

@@ -54,7 +54,8 @@ SimulatedLidar::SimulatedLidar(const Terrain& terrain, const RayCaster& caster,
       packet_ns_(start_ns - packet_duration_ns(settings.mode)),
       random_(seed, 0x11DA),
       beam_(terrain, caster, settings.reach),
-      echoes_(Beam::kMostEchoes + 1),
+      dust_(settings.dust_puffs, motion, start_ns, seed),
+      echoes_(Beam::kMostEchoes + 2),
       shot_count_(settings.mode == ReturnMode::dual ? kShots / 2 : kShots) {
   const Lasers& lasers = lasers_of(settings.model);
   for (std::size_t i = 0; i < kLasers; ++i) {
@@ -71,6 +72,7 @@ SimulatedLidar::SimulatedLidar(const Terrain& terrain, const RayCaster& caster,
 
 void SimulatedLidar::advance() {
   packet_ns_ += packet_duration_ns(settings_.mode);
+  dust_.advance(packet_ns_);
   for (std::size_t i = 0; i < shot_count_; ++i) {
     const auto firing = static_cast<std::int64_t>(i / kLasers);
     const auto laser = static_cast<std::int64_t>(i % kLasers);
@@ -112,7 +114,8 @@ SimulatedShot SimulatedLidar::cast(std::size_t laser, std::int64_t t_ns) {
     if (random_.chance(std::exp(-echo.light)) || random_.chance(settings_.lost_share)) continue;
     echoes_.push_back(echo);
   }
-  if (random_.chance(settings_.dust_share)) add_dust(echoes_);
+  if (random_.chance(settings_.dust_share)) add_dust(random_.uniform(0.6, 5));
+  if (const auto range = dust_.cast(origin, beam.col(0), t_ns, settings_.reach)) add_dust(*range);
   if (echoes_.empty()) return shot;
   const auto dimmer = [](const Echo& a, const Echo& b) { return a.light < b.light; };
   const Echo* strongest = std::max_element(echoes_.begin(), echoes_.end(), dimmer);
@@ -136,13 +139,12 @@ SimulatedShot SimulatedLidar::cast(std::size_t laser, std::int64_t t_ns) {
   return shot;
 }
 
-void SimulatedLidar::add_dust(FixedVector<Echo>& echoes) {
-  const Echo grain{.range = random_.uniform(0.6, 5),
-                   .light = 40 * random_.uniform(),
-                   .reflectivity = random_.uniform(1, 8)};
-  if (!echoes.empty() && echoes[0].range < grain.range) return;
-  echoes.push_back(grain);
-  std::rotate(echoes.begin(), echoes.end() - 1, echoes.end());
+void SimulatedLidar::add_dust(double range) {
+  const Echo grain{
+      .range = range, .light = 40 * random_.uniform(), .reflectivity = random_.uniform(1, 8)};
+  if (!echoes_.empty() && echoes_[0].range < grain.range) return;
+  echoes_.push_back(grain);
+  std::rotate(echoes_.begin(), echoes_.end() - 1, echoes_.end());
 }
 
 float SimulatedLidar::measured(const Echo& echo, std::size_t laser) {

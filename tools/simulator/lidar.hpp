@@ -7,6 +7,7 @@
 #include "scree/config/settings.hpp"
 #include "scree/drivers/velodyne/wire.hpp"
 #include "simulator/beam.hpp"
+#include "simulator/dust.hpp"
 #include "simulator/motion.hpp"
 #include "simulator/ray_caster.hpp"
 
@@ -22,6 +23,7 @@ struct SimulatedLidarSettings {
   double reach = 80;                 ///< metres, beyond it no return
   double lost_share = 0.005;         ///< of the returns, whatever they hit
   double dust_share = 0;             ///< of the shots that meet a grain in the first metres
+  double dust_puffs = 0;             ///< thrown up by the wheels, a metre driven
   bool is_locked = true;             ///< to PPS, with NMEA sentences; else the clock runs free:
   std::int64_t clock_offset_ns = 0;  ///< sensor's clock minus the host's at the first shot
   double clock_skew = 0;             ///< seconds a second that the sensor's clock gains
@@ -83,7 +85,7 @@ private:
   /// The beam's own axes in the `lidar` frame: along it, to its left and up.
   Eigen::Matrix3d axes(std::size_t laser, std::int64_t t_ns) const;
   SimulatedShot cast(std::size_t laser, std::int64_t t_ns);
-  void add_dust(FixedVector<Echo>& echoes);
+  void add_dust(double range);
   float measured(const Echo& echo, std::size_t laser);
   std::uint8_t measured_reflectivity(const Echo& echo);
   std::uint16_t azimuth_counts(std::int64_t t_ns) const;
@@ -95,6 +97,7 @@ private:
   std::int64_t start_ns_, packet_ns_;
   Random random_;
   Beam beam_;
+  Dust dust_;
   FixedVector<Echo> echoes_;
   std::array<Laser, velodyne::kLasers> lasers_{};
   std::array<SimulatedShot, kMostShots> shots_{};
