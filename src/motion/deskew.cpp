@@ -32,7 +32,7 @@ void deskew(const Sweep& sweep, const LidarSettings& lidar, const MotionTrack& t
       continue;
     }
     out.origins.push_back(lidar_at.translation);
-    scatter.add(sweep.laser[i], seen, out.scatter);
+    scatter.add(sweep.laser[i], seen, out.scatter, out.is_grain);
   }
 }
 

@@ -141,7 +141,10 @@ void RollingMap::add(const DeskewedSweep& sweep, const Pose& pose, std::int64_t 
       ++dropped_;
       continue;
     }
-    if (voxel->hits < kMost) ++voxel->hits;
+    if (voxel->hits < kMost) {
+      ++voxel->hits;
+      voxel->grains += sweep.is_grain[i];
+    }
     const float share = 1 / static_cast<float>(voxel->hits);
     voxel->mean += share * (point - voxel->mean);
     voxel->reflectivity += share * (sweep.points.reflectivity[i] - voxel->reflectivity);
@@ -241,10 +244,12 @@ void RollingMap::forget(const Pose& pose) {
   }
 }
 
-/// Seen by two sweeps in the voxel itself, or by three in it and next to it: grains of dust meet by
-/// chance.
+/// Seen by two sweeps in the voxel itself, or by three in it and next to it; what ended alone, by
+/// three in the voxel: grains of dust meet by chance.
 bool RollingMap::is_confirmed(const Voxel& voxel) const {
-  if (voxel.sweeps > 1) return true;
+  const auto is_enough = [](const Voxel& seen) { return seen.sweeps > (seen.is_grain() ? 2 : 1); };
+  if (is_enough(voxel)) return true;
+  if (voxel.is_grain()) return false;
   std::uint32_t other_sweep = voxel.last_sweep;
   for (int x = -1; x <= 1; ++x) {
     for (int y = -1; y <= 1; ++y) {
@@ -252,7 +257,8 @@ bool RollingMap::is_confirmed(const Voxel& voxel) const {
         if (x == 0 && y == 0 && z == 0) continue;
         const Voxel* const near = find(voxel.key.beside(x, y, z));
         if (near == nullptr) continue;
-        if (near->sweeps > 1) return true;
+        if (is_enough(*near)) return true;
+        if (near->is_grain()) continue;
         if (near->last_sweep == voxel.last_sweep || near->last_sweep == other_sweep) continue;
         if (other_sweep != voxel.last_sweep) return true;
         other_sweep = near->last_sweep;

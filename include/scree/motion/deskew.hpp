@@ -12,15 +12,17 @@ struct DeskewedSweep {
   PointCloud points;                     ///< in `base` at the sweep's end
   FixedVector<Eigen::Vector3f> origins;  ///< the lidar's origin at each point's time, same frame
   FixedVector<float> scatter;            ///< of each point, see RangeScatter; metres
+  FixedVector<std::uint8_t> is_grain;    ///< whether it ends alone, see RangeScatter
   std::size_t dropped = 0;
 
   explicit DeskewedSweep(std::size_t capacity)
-      : points(capacity), origins(capacity), scatter(capacity) {}
+      : points(capacity), origins(capacity), scatter(capacity), is_grain(capacity) {}
 
   void clear() {
     points.clear();
     origins.clear();
     scatter.clear();
+    is_grain.clear();
     dropped = 0;
   }
 };

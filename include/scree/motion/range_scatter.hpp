@@ -11,7 +11,8 @@ namespace scree {
 
 /// How much the ranges of neighbouring shots of a laser scatter. On a rock they follow one another
 /// however steep it is; among blades of grass each shot goes as deep as it happens to (compare
-/// Castano and Matthies, "Foliage discrimination using a rotating ladar", ICRA 2003).
+/// Castano and Matthies, "Foliage discrimination using a rotating ladar", ICRA 2003). Shots that
+/// meet grains of dust end alone.
 class RangeScatter {
 public:
   static constexpr float kMost = 0.1F;  ///< metres; of a shot without neighbours, too
@@ -21,7 +22,10 @@ public:
   /// an edge beside it does not count.
   /// @param seen metres, `lidar` frame
   /// @param scatter of the points so far, metres; gets one more
-  void add(std::uint8_t laser, const Eigen::Vector3f& seen, FixedVector<float>& scatter);
+  /// @param is_grain of the points so far: 1 where none of the four shots before and after it, up
+  /// to a degree off, ended within 0.3 m of its range, else 0; gets one more
+  void add(std::uint8_t laser, const Eigen::Vector3f& seen, FixedVector<float>& scatter,
+           FixedVector<std::uint8_t>& is_grain);
 
 private:
   struct Shot {
@@ -30,8 +34,12 @@ private:
     std::size_t index = 0;
   };
   static constexpr std::size_t kLasers = 16;
+  /// The latest shots of a laser, in a ring.
   struct Latest {
-    Shot last, before;
+    static constexpr std::size_t kShots = 4;
+    std::array<Shot, kShots> shots;
+    std::size_t count = 0;
+    const Shot& back(std::size_t shots_ago) const { return shots[(count - shots_ago) % kShots]; }
   };
   std::array<Latest, kLasers> lasers_{};
 };

@@ -59,6 +59,7 @@ private:
   struct Voxel {
     Key key;
     std::uint16_t hits = 0;    ///< points, saturating
+    std::uint16_t grains = 0;  ///< of them: that ended alone
     std::uint16_t sweeps = 0;  ///< that hit it, saturating
     std::uint16_t passed = 0;  ///< beams that went through it since the last hit
     BeamCount beams;
@@ -67,6 +68,7 @@ private:
     std::uint32_t slot = 0;                          ///< in the index
     Eigen::Vector3f mean = Eigen::Vector3f::Zero();  ///< the map's frame - origin
     float reflectivity = 0;
+    bool is_grain() const { return grains == hits; }
   };
 
   /// Cubes of 4 x 4 x 4 voxels; those far from one another share one.

@@ -1,5 +1,6 @@
 #include "scree/motion/range_scatter.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,14 +22,35 @@ Eigen::Vector3f shot(double azimuth, double range, double up = 0) {
   return (range * along).cast<float>();
 }
 
-/// Of a laser's shots that follow one another; no return where the range is 0.
-std::vector<float> scatter_of(const std::vector<double>& ranges, double step = kPerShot) {
-  RangeScatter scatter;
-  FixedVector<float> all(ranges.size());
-  for (std::size_t i = 0; i < ranges.size(); ++i) {
-    if (ranges[i] > 0) scatter.add(3, shot(step * static_cast<double>(i), ranges[i]), all);
+/// What is known of the points of a turn.
+struct Turn {
+  RangeScatter range_scatter;
+  FixedVector<float> scatter;
+  FixedVector<std::uint8_t> is_grain;
+
+  explicit Turn(std::size_t points) : scatter(points), is_grain(points) {}
+  void add(std::uint8_t laser, const Eigen::Vector3f& seen) {
+    range_scatter.add(laser, seen, scatter, is_grain);
   }
-  return {all.begin(), all.end()};
+};
+
+/// A laser's shots that follow one another; no return where the range is 0.
+Turn turn_of(const std::vector<double>& ranges, double step = kPerShot) {
+  Turn turn(ranges.size());
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    if (ranges[i] > 0) turn.add(3, shot(step * static_cast<double>(i), ranges[i]));
+  }
+  return turn;
+}
+
+std::vector<float> scatter_of(const std::vector<double>& ranges, double step = kPerShot) {
+  const Turn turn = turn_of(ranges, step);
+  return {turn.scatter.begin(), turn.scatter.end()};
+}
+
+std::vector<int> grains_of(const std::vector<double>& ranges, double step = kPerShot) {
+  const Turn turn = turn_of(ranges, step);
+  return {turn.is_grain.begin(), turn.is_grain.end()};
 }
 
 double mean_of(const std::vector<float>& values) {
@@ -99,41 +121,73 @@ TEST(RangeScatter, TakesTheSensorsSpeeds) {
   }
 }
 
+TEST(RangeScatter, AGrainEndsAlone) {
+  using testing::ElementsAre;
+  EXPECT_THAT(grains_of({9, 9, 2, 9, 9}), ElementsAre(0, 0, 1, 0, 0));
+  EXPECT_THAT(grains_of({0, 0, 2, 0, 0}), ElementsAre(1)) << "before the sky";
+  EXPECT_THAT(grains_of({9, 9, 2, 2.1, 9}), ElementsAre(0, 0, 0, 0, 0)) << "a post";
+  EXPECT_THAT(grains_of({9, 2, 9, 9, 9, 2.2, 9}), ElementsAre(0, 0, 0, 0, 0, 0, 0)) << "grass";
+  EXPECT_THAT(grains_of({9, 2, 9, 9, 9, 9, 2, 9}), ElementsAre(0, 1, 0, 0, 0, 0, 1, 0));
+  EXPECT_THAT(grains_of({9, 2, 9, 2.5, 9}), ElementsAre(0, 1, 0, 1, 0));
+  EXPECT_THAT(grains_of({2, 0, 0, 2}, 2 * kPerShot), ElementsAre(1, 1)) << "20 turns a second";
+  EXPECT_THAT(grains_of({2, 0, 2}, 2 * kPerShot), ElementsAre(0, 0));
+}
+
+TEST(RangeScatter, ThinDustIsMostlyGrainsAndGrassIsNot) {
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> depth(0, 0.5), chance(0, 1);
+  const auto share = [&](double stopped) {
+    std::vector<double> ranges(5000, 9.0);
+    for (double& range : ranges) {
+      if (chance(random) < stopped) range = 4 + depth(random);
+    }
+    const auto grains = grains_of(ranges);
+    double near = 0, alone = 0;
+    for (std::size_t i = 0; i < ranges.size(); ++i) {
+      if (ranges[i] > 5) continue;
+      ++near;
+      alone += grains[i];
+    }
+    return alone / near;
+  };
+  EXPECT_GT(share(0.02), 0.8);
+  EXPECT_LT(share(0.5), 0.05);
+}
+
 TEST(RangeScatter, KeepsLasersApart) {
-  RangeScatter scatter;
-  FixedVector<float> all(32 * 16);
+  Turn turn(32 * 16);
   for (int i = 0; i < 32; ++i) {
     for (std::uint8_t laser = 0; laser < 16; ++laser) {
-      scatter.add(laser, shot(kPerShot * i, 4 + laser, 0.035 * (laser - 8)), all);
+      turn.add(laser, shot(kPerShot * i, 4 + laser, 0.035 * (laser - 8)));
     }
   }
-  EXPECT_LT(std::ranges::max(all), 1e-4);
+  EXPECT_LT(std::ranges::max(turn.scatter), 1e-4);
+  EXPECT_EQ(std::ranges::max(turn.is_grain), 0);
 }
 
 // With dual returns the second return of a shot follows the first.
 TEST(RangeScatter, TwoReturnsOfAShotAreNoNeighbours) {
-  RangeScatter scatter;
-  FixedVector<float> all(40);
+  Turn turn(40);
   for (int i = 0; i < 20; ++i) {
-    scatter.add(3, shot(kPerShot * i, 5), all);
-    scatter.add(3, shot(kPerShot * i, 8), all);
+    turn.add(3, shot(kPerShot * i, 5));
+    turn.add(3, shot(kPerShot * i, 8));
   }
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    EXPECT_NEAR(all[i], i % 2 == 0 ? 0 : RangeScatter::kMost, 1e-5) << i;
+  for (std::size_t i = 0; i < turn.scatter.size(); ++i) {
+    EXPECT_NEAR(turn.scatter[i], i % 2 == 0 ? 0 : RangeScatter::kMost, 1e-5) << i;
   }
 }
 
 TEST(RangeScatter, TakesAnythingAndNoMoreThanFits) {
-  RangeScatter scatter;
-  FixedVector<float> all(100);
+  Turn turn(100);
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   const Eigen::Vector3f odd[] = {{0, 0, 0}, {kNan, 0, 1}, {kInfinity, 1, 0}, {1e30F, 1e30F, 0}};
   for (int i = 0; i < 200; ++i) {
-    scatter.add(static_cast<std::uint8_t>(i), i % 3 == 0 ? odd[i % 4] : shot(kPerShot * i, 5), all);
+    turn.add(static_cast<std::uint8_t>(i), i % 3 == 0 ? odd[i % 4] : shot(kPerShot * i, 5));
   }
-  EXPECT_EQ(all.size(), 100U);
-  for (const float each : all) {
+  EXPECT_EQ(turn.scatter.size(), 100U);
+  EXPECT_EQ(turn.is_grain.size(), 100U);
+  for (const float each : turn.scatter) {
     EXPECT_GE(each, 0);
     EXPECT_LE(each, RangeScatter::kMost);
   }

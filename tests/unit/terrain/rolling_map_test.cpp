@@ -36,12 +36,14 @@ protected:
   std::int64_t now_ns_ = kStart;
 
   /// @param point in `odom`
-  void see(const Eigen::Vector3d& point) {
+  /// @param is_grain whether no other shot ended near it
+  void see(const Eigen::Vector3d& point, bool is_grain = false) {
     const Eigen::Vector3f seen =
         (pose_.rotation.conjugate() * (point - pose_.translation)).cast<float>();
     sweep_.points.push_back(seen.x(), seen.y(), seen.z(), 20);
     sweep_.origins.push_back(Eigen::Vector3f(0, 0, 1));
     sweep_.scatter.push_back(kScatter);
+    sweep_.is_grain.push_back(is_grain ? 1 : 0);
   }
   void end_sweep(double reach = std::numeric_limits<double>::infinity()) {
     map_.add(sweep_, pose_, now_ns_ += kTurnNs, reach);
@@ -149,6 +151,23 @@ TEST_F(RollingMapTest, ASweepConfirmsWithASurfaceThatTwoHaveSeen) {
   see(surface + right);
   end_sweep();
   EXPECT_TRUE(has_near(surface + right));
+}
+
+TEST_F(RollingMapTest, GrainsDoNotConfirmOneAnother) {
+  const Eigen::Vector3d right(kVoxel, 0, 0), up(0, 0, kVoxel);
+  const Eigen::Vector3d dust(3, 1, 1.5), again(3, -1, 1.5), blade(3, 4, 1.5), grass(3, -4, 1.5);
+  for (int sweep = 0; sweep < 4; ++sweep) {
+    see(dust + (sweep & 1) * right + (sweep >> 1) * up, true);
+    if (sweep < 2) see(again, true);
+    if (sweep < 3) see(blade, true);
+    see(grass + (sweep & 1) * right + (sweep >> 1) * up, sweep == 0);
+    end_sweep();
+  }
+  EXPECT_FALSE(has_near(dust, 0.1)) << "four grains beside one another";
+  EXPECT_FALSE(has_near(again)) << "two grains in the same place";
+  EXPECT_TRUE(has_near(blade)) << "three sweeps have seen it";
+  EXPECT_TRUE(has_near(grass + right)) << "three that are no grains";
+  EXPECT_FALSE(has_near(grass)) << "a grain among them";
 }
 
 TEST_F(RollingMapTest, WhatIsFarIsGatheredAndHandedOutOnceItIsNear) {

@@ -43,7 +43,7 @@ inline LidarSettings usual_lidar() {
 
 /// One turn of 16 lasers over 0.1 s that ends at `end`, seconds.
 inline void scan(const RoughGround& ground, const SimpleDrive& drive, const LidarSettings& lidar,
-                 double end, Sweep& sweep, int columns = 200) {
+                 double end, Sweep& sweep, int columns = 400) {
   constexpr double kTurn = 0.1, kFarthest = 15;
   const Pose mount = lidar.mount();
   sweep.clear();
@@ -79,6 +79,7 @@ inline void look(const RoughGround& ground, const Pose& pose, double reach, doub
       sweep.points.push_back(seen.x(), seen.y(), seen.z(), 20);
       sweep.origins.push_back(Eigen::Vector3f(0, 0, 1));
       sweep.scatter.push_back(0);
+      sweep.is_grain.push_back(0);
     }
   }
 }
