@@ -59,7 +59,7 @@ void BodyRegions::mark(const EdgePoints& bodies, Side side, const GroundSurface&
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if ((bodies.height[i] > 0) != (side == Side::above)) continue;
     const std::size_t cell = surface.cell_at(bodies.points.x[i], bodies.points.y[i]);
-    state_[cell] = body;
+    state_[cell] = side == Side::above && solidity.is_loose(cell) ? loose : firm;
     // Holes have no tops: their floors are seldom seen, and what is seen of a wall has any depth.
     const float share = solidity.of(cell);
     top_[cell] = std::max(top_[cell], bodies.height[i] * (share * share));
@@ -93,7 +93,7 @@ void BodyRegions::join(float saddle) {
   constexpr float kHighest = 65, kStep = 0.001F, kLeastRise = 0.06F;  // metres
   order_.clear();
   for (std::size_t cell = 0; cell < state_.size(); ++cell) {
-    if (state_[cell] != body) continue;
+    if (state_[cell] < loose) continue;
     order_.push(static_cast<std::uint64_t>(std::max(kHighest - top_[cell], 0.0F) / kStep), cell);
   }
   order_.sort();
@@ -102,7 +102,7 @@ void BodyRegions::join(float saddle) {
     const std::uint32_t cell = order_.index(i);
     parent_[cell] = cell;
     for (const std::size_t other : neighbours(cell, columns_)) {
-      if (parent_[other] == kNoLabel) continue;
+      if (parent_[other] == kNoLabel || state_[other] != state_[cell]) continue;
       std::uint32_t higher = root_of(parent_, cell),
                     lower = root_of(parent_, static_cast<std::uint32_t>(other));
       if (top_[higher] < top_[lower]) std::swap(higher, lower);

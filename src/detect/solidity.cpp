@@ -1,5 +1,6 @@
 #include "scree/detect/solidity.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -13,6 +14,8 @@ void Solidity::build(PointView cloud, std::span<const BeamCount> beams,
   passed_.assign(cells, 0);
   scatter_.assign(cells, 0);
   around_.assign(cells, 1);
+  highest_.assign(cells, 0);
+  loose_.assign(cells, 0);
   for (std::size_t i = 0; i < beams.size(); ++i) {
     const float x = cloud.x[i], y = cloud.y[i];
     if (!std::isfinite(x) || !std::isfinite(y)) continue;
@@ -22,24 +25,70 @@ void Solidity::build(PointView cloud, std::span<const BeamCount> beams,
     ended_[cell] += static_cast<float>(beams[i].ended);
     passed_[cell] += static_cast<float>(beams[i].passed);
     scatter_[cell] += beams[i].scatter;
+    highest_[cell] = std::max(highest_[cell], height);
   }
-  if (!beams.empty()) spread(surface.columns());
+  if (beams.empty()) return;
+  spread(surface.columns());
+  settle(surface.columns());
 }
 
 void Solidity::spread(std::size_t columns) {
   constexpr std::size_t kReach = 2;
+  constexpr float kLooseShare = 0.12F, kLooseBase = 0.05F;  // of the height above metres below it
   const std::size_t margin = kReach * columns + kReach;
+  const auto sum = [columns](const FixedVector<float>& of, std::size_t cell, std::size_t reach) {
+    float total = 0;
+    const std::size_t first = cell - reach * columns - reach;
+    for (std::size_t row = first; row <= first + 2 * reach * columns; row += columns) {
+      for (std::size_t near = row; near <= row + 2 * reach; ++near) total += of[near];
+    }
+    return total;
+  };
   for (std::size_t cell = margin; cell + margin < ended_.size(); ++cell) {
     if (ended_[cell] == 0) continue;
-    float ended = 0, passed = 0;
-    for (std::size_t row = cell - margin; row <= cell + margin; row += columns) {
-      for (std::size_t near = row; near <= row + 2 * kReach; ++near) {
-        ended += ended_[near];
-        passed += passed_[near];
-      }
-    }
-    around_[cell] = share(ended, passed);
+    around_[cell] = share(sum(ended_, cell, kReach), sum(passed_, cell, kReach));
+    // Blades scatter the ranges as far as a tuft is deep, a rock by the sensor's noise.
+    const float scatter = sum(scatter_, cell, 1) / sum(ended_, cell, 1);
+    loose_[cell] = scatter > kLooseShare * (highest_[cell] + kLooseBase) ? 1 : 0;
   }
+}
+
+/// A few firm cells beside loose ones are as loose as those, and the other way round.
+void Solidity::settle(std::size_t columns) {
+  constexpr std::size_t kFewest = 6;
+  for (const std::uint8_t kind : {kFirm, kLoose}) {
+    seen_.assign(loose_.size(), 0);
+    for (std::size_t cell = 0; cell < loose_.size(); ++cell) {
+      if (ended_[cell] == 0 || loose_[cell] != kind || seen_[cell] != 0) continue;
+      const bool is_alone = gather(cell, columns);
+      if (is_alone || patch_.size() >= kFewest) continue;
+      for (const std::uint32_t member : patch_) loose_[member] = kind == kFirm ? kLoose : kFirm;
+    }
+  }
+}
+
+/// The cells of one kind that hang together with one, into `patch_`. The raster's outermost cells
+/// hold no point.
+/// @return whether none of the other kind touches them
+bool Solidity::gather(std::size_t start, std::size_t columns) {
+  bool is_alone = true;
+  patch_.clear();
+  const auto take = [&](std::size_t cell) {
+    if (ended_[cell] == 0 || seen_[cell] != 0) return;
+    if (loose_[cell] != loose_[start]) {
+      is_alone = false;
+      return;
+    }
+    seen_[cell] = 1;
+    patch_.push_back(static_cast<std::uint32_t>(cell));
+  };
+  take(start);
+  for (std::size_t i = 0; i < patch_.size(); ++i) {
+    for (std::size_t row = patch_[i] - columns; row <= patch_[i] + columns; row += columns) {
+      for (std::size_t near = row - 1; near <= row + 1; ++near) take(near);
+    }
+  }
+  return is_alone;
 }
 
 }  // namespace scree

@@ -104,6 +104,7 @@ void Surroundings::measure(Cluster& cluster, std::span<const std::uint32_t> memb
   const auto cells = static_cast<float>(cells_.size());
   constexpr float kAround = 0.3F, kFurtherAround = 0.6F;
   float inside = 0, unseen = 0, around = 0, ground = 0, level_cells = 0, uneven = 0;
+  float loose = 0, highest_loose = 0;
   const OrientedBox& box = cluster.box;
   const float reach = std::hypot(box.length, box.width) / 2 + kFurtherAround,
               step = surface.cell_size();
@@ -119,6 +120,10 @@ void Surroundings::measure(Cluster& cluster, std::span<const std::uint32_t> memb
       if (distance > kAround) continue;
       ++(distance > 0 ? around : inside);
       if (distance > 0 && surface.is_ground(cell)) ++ground;
+      if (distance > 0 && solidity.is_loose(cell)) {
+        ++loose;
+        highest_loose = std::max(highest_loose, solidity.highest(cell));
+      }
       if (distance <= 0 && surface.points_in(cell) == 0) ++unseen;
     }
   }
@@ -129,6 +134,8 @@ void Surroundings::measure(Cluster& cluster, std::span<const std::uint32_t> memb
   features[rim_share] = rim / cells;
   features[unseen_share] = unseen / std::max(inside, 1.0F);
   features[ground_share] = ground / std::max(around, 1.0F);
+  features[loose_around] = loose / std::max(around, 1.0F);
+  features[over_loose] = features[max_height] - highest_loose;
   features[through_share] = through / static_cast<float>(members.size());
   features[cell_points] = static_cast<float>(members.size()) / cells;
   features[cell_spread] = spread / cells;

@@ -37,7 +37,7 @@ public:
   std::size_t count() const { return count_; }
 
 private:
-  enum State : std::uint8_t { unseen, clear, body };
+  enum State : std::uint8_t { unseen, clear, loose, firm };
   enum class Side : std::uint8_t { above, below };
 
   void mark(const EdgePoints& bodies, Side side, const GroundSurface& surface,

@@ -32,6 +32,8 @@ enum Feature : std::size_t {
   edge_height,    ///< median height or depth of its cells next to seen ground, metres
   edge_share,     ///< of those cells: that reach half its height
   range_scatter,  ///< of the beams that ended in it: mean, see RangeScatter, metres
+  loose_around,   ///< of the cells up to 0.3 m around its box: with something loose, see Solidity
+  over_loose,     ///< its highest point above the highest in those, metres; above the ground: none
   kFeatures
 };
 inline constexpr std::size_t kPaperFeatures = 5;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include "scree/core/beam_count.hpp"
@@ -10,12 +11,20 @@
 
 namespace scree {
 
-/// Of the beams that came to what stands above the ground the share that ended there, on the raster
-/// of the ground's surface. Rocks stop them all; between blades of grass most go on.
+/// Of the beams that came to what stands above the ground the share that ended there, and how much
+/// the ranges of those scatter, on the raster of the ground's surface. Rocks stop them all; between
+/// blades of grass most go on, and the others end as deep in it as they happen to.
 class Solidity {
 public:
   explicit Solidity(std::size_t max_cells)
-      : ended_(max_cells), passed_(max_cells), scatter_(max_cells), around_(max_cells) {}
+      : ended_(max_cells),
+        passed_(max_cells),
+        scatter_(max_cells),
+        around_(max_cells),
+        highest_(max_cells),
+        loose_(max_cells),
+        seen_(max_cells),
+        patch_(max_cells) {}
 
   /// Counts the beams of the points that stand between two heights above the surface, metres.
   /// @param beams of each point of the cloud; empty where nothing is known of them
@@ -31,17 +40,27 @@ public:
   bool stops_all(std::size_t cell) const { return ended_[cell] > 0 && of(cell) >= kAll; }
   /// Of the cells up to two cells away, too.
   float around(std::size_t cell) const { return around_[cell]; }
+  /// Of the points that were counted, metres above the surface; 0 without any.
+  float highest(std::size_t cell) const { return highest_[cell]; }
+  /// Whether the ranges scatter, there and in the cells next to it, as they do among blades. At
+  /// least six cells are so together, unless they stand alone.
+  bool is_loose(std::size_t cell) const { return loose_[cell] != 0; }
 
   /// One more beam ended than was counted: few beams say little.
   static float share(float ended, float passed) { return (ended + 1) / (ended + passed + 1); }
 
 private:
+  static constexpr std::uint8_t kFirm = 0, kLoose = 1;
   /// Voxels at an edge count beams that went past it, too.
   static constexpr float kAll = 0.94F;
 
   void spread(std::size_t columns);
+  void settle(std::size_t columns);
+  bool gather(std::size_t start, std::size_t columns);
 
-  FixedVector<float> ended_, passed_, scatter_, around_;
+  FixedVector<float> ended_, passed_, scatter_, around_, highest_;
+  FixedVector<std::uint8_t> loose_, seen_;
+  FixedVector<std::uint32_t> patch_;  // cells that hang together
 };
 
 }  // namespace scree

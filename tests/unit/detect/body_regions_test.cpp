@@ -119,6 +119,23 @@ TEST_F(BodyRegionsTest, RocksRiseOutOfTheGrassThatJoinsThem) {
   EXPECT_NE(label_at(-0.5F, 0), label_at(0.5F, 0));
 }
 
+TEST_F(BodyRegionsTest, ARockIsPartedFromTheGrassAroundItWhateverItsHeight) {
+  const auto is_rock = [](float x, float y) { return std::hypot(x, y) < 0.35F; };
+  for (const float top : {0.15F, 0.2F, 0.5F}) {
+    const auto height = [&](float x, float y) {
+      if (is_rock(x, y)) return top;
+      return std::abs(x) < 1 && std::abs(y) < 0.6F ? 0.2F : 0.0F;
+    };
+    const auto beams = [&](float x, float y) {
+      return is_rock(x, y) ? BeamCount{20, 0, 0.2F} : BeamCount{20, 0, 1};
+    };
+    look_at(height, beams);
+    EXPECT_EQ(regions_.count(), 2U) << top;
+    EXPECT_NE(label_at(0, 0), label_at(0.7F, 0)) << top;
+    EXPECT_EQ(label_at(-0.7F, 0), label_at(0.7F, 0)) << "grass on both sides, " << top;
+  }
+}
+
 TEST_F(BodyRegionsTest, ALowRidgeOfUnevenHeightStaysWhole) {
   look_at([](float x, float y) {
     return std::abs(y) < 0.15F && std::abs(x) < 1.5F ? 0.11F + 0.04F * std::sin(9 * x) : 0.0F;

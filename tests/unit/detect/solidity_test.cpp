@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <random>
 #include <vector>
@@ -98,6 +100,65 @@ TEST_F(SolidityTest, AllIsStoppedWhereHardlyABeamWentOn) {
   EXPECT_FALSE(stops_all({100, 10})) << "a dense tuft";
   EXPECT_FALSE(stops_all({0, 0})) << "no beam came to it";
   EXPECT_FALSE(solidity_.stops_all(surface_.cell_at(1, 1))) << "nothing stands there";
+}
+
+TEST_F(SolidityTest, IsLooseWhereRangesScatterMuchForItsHeight) {
+  const auto is_loose = [&](float scatter, float height) {
+    beams_.clear();
+    for (std::size_t i = 0; i < cloud_.size(); ++i) {
+      if (cloud_.z[i] > 0 && cloud_.z[i] < 2) cloud_.z[i] = height;
+      beams_.push_back({100, 0, 100 * scatter});
+    }
+    solidity_.build(cloud_, beams_, surface_, kLowest, kHighest);
+    EXPECT_NEAR(solidity_.highest(middle()), height, 1e-3);
+    return solidity_.is_loose(middle());
+  };
+  EXPECT_FALSE(is_loose(0.01F, 0.1F)) << "a stone, seen with 2 cm of noise";
+  EXPECT_TRUE(is_loose(0.04F, 0.2F)) << "grass";
+  EXPECT_FALSE(is_loose(0.04F, 0.8F)) << "the edge of a post";
+  EXPECT_FALSE(solidity_.is_loose(surface_.cell_at(1, 1))) << "nothing stands there";
+  solidity_.build(cloud_, {}, surface_, kLowest, kHighest);
+  EXPECT_FALSE(solidity_.is_loose(middle())) << "nothing is known of the beams";
+  EXPECT_EQ(solidity_.highest(middle()), 0);
+}
+
+TEST_F(SolidityTest, AFewCellsAreAsLooseAsThoseAroundThem) {
+  // Of the cell that lies so many columns and rows from the middle one.
+  const auto cell_at = [&](int column, int row) {
+    return middle() + static_cast<std::size_t>(row * static_cast<int>(surface_.columns()) + column);
+  };
+  const auto look_at = [&](float base, float other, auto&& is_other) {
+    std::vector<float> scatter(cells(), base);
+    for (int row = -3; row <= 3; ++row) {
+      for (int column = -3; column <= 3; ++column) {
+        if (is_other(column, row)) scatter[cell_at(column, row)] = other;
+      }
+    }
+    beams_.clear();
+    for (std::size_t i = 0; i < cloud_.size(); ++i) {
+      beams_.push_back({100, 0, 100 * scatter[surface_.cell_at(cloud_.x[i], cloud_.y[i])]});
+    }
+    solidity_.build(cloud_, beams_, surface_, kLowest, kHighest);
+    return solidity_.is_loose(middle());
+  };
+  const auto is_within = [](int reach) {
+    return [reach](int x, int y) { return std::max(std::abs(x), std::abs(y)) <= reach; };
+  };
+  EXPECT_FALSE(look_at(0.01F, 0.2F, is_within(0))) << "one scattered cell in a rock";
+  EXPECT_TRUE(look_at(0.01F, 0.2F, is_within(2))) << "a tuft on a rock";
+  EXPECT_TRUE(look_at(0.1F, 0, is_within(1))) << "a firm spot in a tuft";
+  EXPECT_FALSE(look_at(0.1F, 0, is_within(2))) << "a stone in a tuft";
+}
+
+TEST_F(SolidityTest, AFewCellsThatStandAloneStayAsTheyAre) {
+  for (std::size_t i = 0; i < cloud_.size(); ++i) {
+    if (surface_.cell_at(cloud_.x[i], cloud_.y[i]) != middle()) cloud_.z[i] = 0;
+  }
+  for (const float scatter : {0.01F, 0.1F}) {
+    beams_.assign(cloud_.size(), {100, 0, 100 * scatter});
+    solidity_.build(cloud_, beams_, surface_, kLowest, kHighest);
+    EXPECT_EQ(solidity_.is_loose(middle()), scatter > 0.05F);
+  }
 }
 
 TEST_F(SolidityTest, TakesPointsThatAreNoNumbers) {

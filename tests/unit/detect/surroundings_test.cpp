@@ -93,6 +93,29 @@ TEST(Surroundings, MeasuresTheShareOfTheBeamsThatEnded) {
   EXPECT_NEAR(grass[range_scatter], 0.05, 1e-4);
 }
 
+TEST(Surroundings, KnowsTheGrassAround) {
+  // A rock 0.4 m high between two strips of grass, 0.2 m high.
+  const auto is_grass = [](float x, float y) {
+    return std::abs(x) > 0.72F && std::abs(x) < 0.95F && std::abs(y) < 0.3F;
+  };
+  const PointCloud cloud = ground_with([&](float x, float y, float) {
+    if (inside(x, y)) return 0.4F;
+    return is_grass(x, y) ? 0.2F : 0.0F;
+  });
+  std::vector<BeamCount> beams(cloud.size(), {100, 0, 1});
+  const Features among_rocks = features_of(cloud, beams);
+  EXPECT_EQ(among_rocks[loose_around], 0);
+  EXPECT_NEAR(among_rocks[over_loose], 0.4, 0.01);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (is_grass(cloud.x[i], cloud.y[i])) beams[i] = {100, 0, 6};
+  }
+  const Features in_grass = features_of(cloud, beams);
+  EXPECT_GT(in_grass[loose_around], 0.03);
+  EXPECT_LT(in_grass[loose_around], 0.12);
+  EXPECT_NEAR(in_grass[over_loose], 0.2, 0.01);
+  EXPECT_EQ(features_of(cloud)[loose_around], 0) << "nothing is known without beams";
+}
+
 TEST(Surroundings, GroundBelowItsEdgeMakesARockNoLessSteep) {
   // As wide as a table on its foot: half the points within its outline lie on the ground.
   const auto table = [](float x, float y, float chance) {
