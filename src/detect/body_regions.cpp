@@ -1,25 +1,14 @@
 #include "scree/detect/body_regions.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
+#include "scree/detect/neighbours.hpp"
 #include "scree/detect/supervoxels.hpp"
 #include "scree/detect/union_find.hpp"
 
 namespace scree {
-namespace {
-
-/// The neighbours of a cell: to its four sides, then at its four corners. The raster's outermost
-/// cells hold no point.
-std::array<std::size_t, 8> neighbours(std::size_t cell, std::size_t columns) {
-  return {cell - 1,           cell + 1,           cell - columns,     cell + columns,
-          cell - columns - 1, cell - columns + 1, cell + columns - 1, cell + columns + 1};
-}
-
-}  // namespace
-
 BodyRegions::BodyRegions(std::size_t max_points, std::size_t max_cells)
     : state_(max_cells),
       grown_(max_cells),
@@ -66,7 +55,8 @@ void BodyRegions::mark(const EdgePoints& bodies, Side side, const GroundSurface&
   }
 }
 
-/// Every unseen cell becomes what a neighbour is, a body before anything else.
+/// Every unseen cell becomes what a neighbour is, a body before anything else, and of bodies
+/// the firm one.
 /// @param share of the neighbour's top that it gets
 void BodyRegions::grow(bool diagonally, float share) {
   grown_.resize(state_.size());
@@ -77,7 +67,7 @@ void BodyRegions::grow(bool diagonally, float share) {
     for (std::size_t cell = row + 1; cell + 1 < row + columns_; ++cell) {
       if (state_[cell] != unseen) continue;
       const auto around = neighbours(cell, columns_);
-      for (const std::size_t other : std::span(around).first(diagonally ? 8 : 4)) {
+      for (const std::size_t other : std::span(around).first(diagonally ? around.size() : kSides)) {
         grown_[cell] = std::max(grown_[cell], state_[other]);
         grown_top_[cell] = std::max(grown_top_[cell], share * top_[other]);
       }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "scree/detect/neighbours.hpp"
 #include "scree/detect/supervoxels.hpp"
 
 namespace scree {
@@ -154,15 +155,14 @@ void GroundSurface::find_patches(float max_slope) {
     queue_.push_back(seed);
     patch_[seed] = number;
     for (std::size_t next = 0; next < queue_.size(); ++next) {
-      for (std::size_t v = 0; v < 3; ++v) {
-        for (std::size_t u = 0; u < 3; ++u) {
-          const std::size_t cell = queue_[next] + v * columns_ + u - columns_ - 1;
-          if (ground_[cell] == 0 || patch_[cell] != kNoLabel) continue;
-          const float way = u != 1 && v != 1 ? diagonal : straight;
-          if (std::abs(median_[cell] - median_[queue_[next]]) > way) continue;
-          patch_[cell] = number;
-          queue_.push_back(static_cast<std::uint32_t>(cell));
-        }
+      const auto around = neighbours(queue_[next], columns_);
+      for (std::size_t i = 0; i < around.size(); ++i) {
+        const std::size_t cell = around[i];
+        if (ground_[cell] == 0 || patch_[cell] != kNoLabel) continue;
+        const float way = i < kSides ? straight : diagonal;
+        if (std::abs(median_[cell] - median_[queue_[next]]) > way) continue;
+        patch_[cell] = number;
+        queue_.push_back(static_cast<std::uint32_t>(cell));
       }
     }
     patches_.push_back({static_cast<std::uint32_t>(queue_.size())});

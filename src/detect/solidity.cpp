@@ -4,6 +4,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "scree/detect/neighbours.hpp"
+
 namespace scree {
 
 void Solidity::build(PointView cloud, std::span<const BeamCount> beams,
@@ -84,9 +86,7 @@ bool Solidity::gather(std::size_t start, std::size_t columns) {
   };
   take(start);
   for (std::size_t i = 0; i < patch_.size(); ++i) {
-    for (std::size_t row = patch_[i] - columns; row <= patch_[i] + columns; row += columns) {
-      for (std::size_t near = row - 1; near <= row + 1; ++near) take(near);
-    }
+    for (const std::size_t near : neighbours(patch_[i], columns)) take(near);
   }
   return is_alone;
 }

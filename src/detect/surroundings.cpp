@@ -118,13 +118,16 @@ void Surroundings::measure(Cluster& cluster, std::span<const std::uint32_t> memb
         uneven += surface.roughness(cell);
       }
       if (distance > kAround) continue;
-      ++(distance > 0 ? around : inside);
-      if (distance > 0 && surface.is_ground(cell)) ++ground;
-      if (distance > 0 && solidity.is_loose(cell)) {
-        ++loose;
-        highest_loose = std::max(highest_loose, solidity.highest(cell));
+      if (distance <= 0) {
+        ++inside;
+        if (surface.points_in(cell) == 0) ++unseen;
+        continue;
       }
-      if (distance <= 0 && surface.points_in(cell) == 0) ++unseen;
+      ++around;
+      if (surface.is_ground(cell)) ++ground;
+      if (!solidity.is_loose(cell)) continue;
+      ++loose;
+      highest_loose = std::max(highest_loose, solidity.highest(cell));
     }
   }
   Features& features = cluster.features;

@@ -17,8 +17,7 @@ void RangeScatter::add(std::uint8_t laser, const Eigen::Vector3f& seen, FixedVec
   shot.range = seen.norm();
   shot.along = seen / shot.range;
   shot.index = scatter.size() - 1;
-  for (std::size_t ago = 1; ago <= std::min(latest.count, Latest::kShots); ++ago) {
-    const Shot& other = latest.back(ago);
+  for (const Shot& other : latest.shots) {
     const bool is_beside = (other.along - shot.along).squaredNorm() <= kBeside * kBeside;
     if (!is_beside || std::abs(other.range - shot.range) > kAsFar) continue;
     is_grain[other.index] = is_grain[shot.index] = 0;
