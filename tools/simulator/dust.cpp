@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace scree {
 namespace {
@@ -12,7 +13,7 @@ constexpr std::int64_t kLifeNs = 5'000'000'000;
 
 Dust::Dust(double puffs, const Motion& motion, std::int64_t start_ns, std::uint64_t seed)
     : puffs_(puffs), motion_(motion), random_(seed, 0xD057), now_ns_(start_ns) {
-  const double angle = random_.uniform(0, 2 * M_PI), speed = random_.uniform(0, 0.6);
+  const double angle = random_.uniform(0, 2 * std::numbers::pi), speed = random_.uniform(0, 0.6);
   wind_ = {speed * std::cos(angle), speed * std::sin(angle), 0};
   densest_ = random_.uniform(1, 8);
 }

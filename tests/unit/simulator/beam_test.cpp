@@ -5,18 +5,10 @@
 #include <numbers>
 
 #include "scree/core/pose.hpp"
+#include "simulator/bare_terrain.hpp"
 
 namespace scree {
 namespace {
-
-TerrainSettings level() {
-  TerrainSettings settings;
-  settings.size = 24;
-  settings.positive = settings.negative = settings.smooth = 0;
-  settings.roughness = 0;
-  settings.gentlest_slope_deg = settings.steepest_slope_deg = 0;
-  return settings;
-}
 
 struct Axes {
   Eigen::Vector3d along, left, up;
@@ -28,7 +20,7 @@ Axes axes(double azimuth, double elevation) {
 }
 
 TEST(Beam, LevelGroundGivesOneEchoAndTheSkyNone) {
-  const Terrain terrain(level(), 1);
+  const Terrain terrain(test::level_terrain(), 1);
   const RayCaster caster(terrain);
   Beam beam(terrain, caster, 80);
   Random random(1);
@@ -43,7 +35,7 @@ TEST(Beam, LevelGroundGivesOneEchoAndTheSkyNone) {
 }
 
 TEST(Beam, FarGrazingLightIsFaint) {
-  TerrainSettings settings = level();
+  TerrainSettings settings = test::level_terrain();
   settings.size = 100;
   settings.cell = 0.1;
   const Terrain terrain(settings, 1);
@@ -57,7 +49,7 @@ TEST(Beam, FarGrazingLightIsFaint) {
 }
 
 TEST(Beam, EdgesMixNearSurfacesAndPartFarOnes) {
-  TerrainSettings settings = level();
+  TerrainSettings settings = test::level_terrain();
   settings.positive = 6;
   settings.pairs = 0;
   settings.placed_within = 8;
@@ -86,7 +78,7 @@ TEST(Beam, EdgesMixNearSurfacesAndPartFarOnes) {
 }
 
 TEST(Beam, TuftsLetAPartOfTheLightThrough) {
-  TerrainSettings settings = level();
+  TerrainSettings settings = test::level_terrain();
   settings.tuft_cover = 0.3;
   const Terrain terrain(settings, 1);
   const RayCaster caster(terrain);

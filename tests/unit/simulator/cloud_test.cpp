@@ -1,4 +1,5 @@
 #include "simulator/cloud.hpp"
+#include "simulator/bare_terrain.hpp"
 
 #include <gtest/gtest.h>
 
@@ -56,10 +57,8 @@ std::vector<int> counts(const PointCloud& cloud) {
 }
 
 TEST(ReconstructedCloud, IsDenserInSomePlaces) {
-  TerrainSettings settings;
-  settings.size = 24;
+  TerrainSettings settings = test::bare_terrain(24);
   settings.cell = 0.05;
-  settings.positive = settings.negative = settings.smooth = 0;
   const Terrain terrain(settings, 2);
   CloudSettings cloud_settings;
   cloud_settings.points = 200'000;
@@ -72,10 +71,8 @@ TEST(ReconstructedCloud, IsDenserInSomePlaces) {
 }
 
 TEST(ReconstructedCloud, TuftsArePointsAboveTheGround) {
-  TerrainSettings settings;
-  settings.size = 24;
+  TerrainSettings settings = test::bare_terrain(24);
   settings.cell = 0.05;
-  settings.positive = settings.negative = settings.smooth = 0;
   settings.tuft_cover = 0.3;
   const Terrain terrain(settings, 2);
   CloudSettings cloud_settings;

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "simulator/bare_terrain.hpp"
 #include "simulator/lidar.hpp"
 
 namespace scree {
@@ -71,10 +72,7 @@ TEST(Dust, AsManyPuffsHoweverOftenItIsAsked) {
 }
 
 TEST(Dust, HidesWhatLiesBehindItFromTheLidar) {
-  TerrainSettings bare;
-  bare.size = 30;
-  bare.positive = bare.negative = bare.smooth = 0;
-  const Terrain terrain(bare, 1);
+  const Terrain terrain(test::bare_terrain(30), 1);
   const RayCaster caster(terrain);
   const Motion motion = drive();
   const Pose mount{{0.1, 0, 0.95}, from_roll_pitch_yaw(0, 0.1, 0)};

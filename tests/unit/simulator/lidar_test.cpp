@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "scree/drivers/velodyne/data_packet.hpp"
+#include "simulator/bare_terrain.hpp"
 #include "simulator/body.hpp"
 
 namespace scree {
@@ -132,10 +133,7 @@ TEST(SimulatedLidar, TruePosesMoveItsPointsOntoTheGround) {
 }
 
 TEST(SimulatedLidar, FreeRunningClockHasItsOwnHour) {
-  TerrainSettings terrain_settings;
-  terrain_settings.size = 4;
-  terrain_settings.positive = terrain_settings.negative = terrain_settings.smooth = 0;
-  const Terrain terrain(terrain_settings, 1);
+  const Terrain terrain(test::bare_terrain(4), 1);
   const RayCaster caster(terrain);
   SimulatedLidarSettings settings;
   settings.is_locked = false;
@@ -153,10 +151,7 @@ TEST(SimulatedLidar, FreeRunningClockHasItsOwnHour) {
 }
 
 TEST(SimulatedLidar, PositionPacketCarriesTheTimeOfDay) {
-  TerrainSettings terrain_settings;
-  terrain_settings.size = 4;
-  terrain_settings.positive = terrain_settings.negative = terrain_settings.smooth = 0;
-  const Terrain terrain(terrain_settings, 1);
+  const Terrain terrain(test::bare_terrain(4), 1);
   const RayCaster caster(terrain);
   SimulatedLidar lidar(terrain, caster, {}, {{0, 0, 1}, Eigen::Quaterniond::Identity()}, kStart, 1);
   lidar.advance();

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "simulator/bare_terrain.hpp"
 #include "simulator/body.hpp"
 
 namespace scree {
@@ -61,10 +62,8 @@ TEST(Track, DrivesBackwardsForAStretchIfAsked) {
 }
 
 TEST(Body, DrivesBackwardsAsTheTrackSays) {
-  TerrainSettings settings;
-  settings.size = 50;
+  TerrainSettings settings = test::bare_terrain(50);
   settings.cell = 0.05;
-  settings.positive = settings.negative = settings.smooth = 0;
   const Terrain terrain(settings, 2);
   const auto track = draw_track({.seconds = 20, .reverse = true}, 4);
   const Motion motion = follow_ground(track, terrain, draw_body(2), 0, 2);
@@ -88,10 +87,8 @@ TEST(Track, DrivesAsFastAsAsked) {
 }
 
 TEST(Body, FollowsTheGround) {
-  TerrainSettings settings;
-  settings.size = 40;
+  TerrainSettings settings = test::bare_terrain(40);
   settings.cell = 0.05;
-  settings.positive = settings.negative = settings.smooth = 0;
   settings.roughness = 0;
   settings.gentlest_slope_deg = settings.steepest_slope_deg = 12;
   const Terrain terrain(settings, 2);

@@ -3,18 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "scree/core/pose.hpp"
+#include "simulator/bare_terrain.hpp"
 
 namespace scree {
 namespace {
-
-TerrainSettings plane() {
-  TerrainSettings settings;
-  settings.size = 24;
-  settings.positive = settings.negative = settings.smooth = 0;
-  settings.roughness = 0;
-  settings.gentlest_slope_deg = settings.steepest_slope_deg = 0;
-  return settings;
-}
 
 const Eigen::Vector3d kLevel(1, 1, 0), kUp = Eigen::Vector3d::UnitZ();
 
@@ -25,7 +17,7 @@ Eigen::Vector3d direction(double azimuth_deg, double elevation_deg) {
 }
 
 TEST(RayCaster, MeetsALevelPlaneWhereItShould) {
-  const Terrain terrain(plane(), 1);
+  const Terrain terrain(test::level_terrain(), 1);
   const RayCaster caster(terrain);
   const Eigen::Vector3d origin(0.1, -0.2, 0.95);
   for (double azimuth = 0; azimuth < 360; azimuth += 7.3) {
@@ -71,7 +63,7 @@ TEST(RayCaster, AgreesWithFineStepsOverRoughGround) {
 }
 
 TEST(RayCaster, LooksBelowTheEdgeOfARockThatLiesOnTheGround) {
-  TerrainSettings settings = plane();
+  TerrainSettings settings = test::level_terrain();
   settings.positive = 12;
   settings.pairs = 0;
   settings.weights = {};
