@@ -11,58 +11,21 @@
 
 #include "allocation_counter.hpp"
 #include "scree/core/rotation.hpp"
+#include "terrain/rolling_map_fixture.hpp"
 
 namespace scree {
 namespace {
 
-constexpr std::int64_t kStart = 1'598'612'523'000'000'000, kTurnNs = 100'000'000;
-constexpr double kVoxel = 0.05;
-constexpr float kScatter = 0.03F;
+using RollingMapTest = test::RollingMapFixture;
 
 using Cell = std::tuple<int, int, int>;
 
 Cell cell_of(const Eigen::Vector3d& place) {
-  const auto cell = [](double value) { return static_cast<int>(std::floor(value / kVoxel)); };
+  const auto cell = [](double value) {
+    return static_cast<int>(std::floor(value / RollingMapTest::kVoxel));
+  };
   return {cell(place.x()), cell(place.y()), cell(place.z())};
 }
-
-/// A map and its clock.
-class RollingMapTest : public testing::Test {
-protected:
-  MapSettings settings_{.voxel = kVoxel, .reach = 12, .max_voxels = 1 << 16};
-  RollingMap map_{settings_};
-  DeskewedSweep sweep_{1 << 15};
-  Pose pose_;
-  std::int64_t now_ns_ = kStart;
-
-  /// @param point in `odom`
-  /// @param is_grain whether no other shot ended near it
-  void see(const Eigen::Vector3d& point, bool is_grain = false) {
-    const Eigen::Vector3f seen =
-        (pose_.rotation.conjugate() * (point - pose_.translation)).cast<float>();
-    sweep_.points.push_back(seen.x(), seen.y(), seen.z(), 20);
-    sweep_.origins.push_back(Eigen::Vector3f(0, 0, 1));
-    sweep_.scatter.push_back(kScatter);
-    sweep_.is_grain.push_back(is_grain ? 1 : 0);
-  }
-  void end_sweep(double reach = std::numeric_limits<double>::infinity()) {
-    map_.add(sweep_, pose_, now_ns_ += kTurnNs, reach);
-    sweep_.clear();
-  }
-  void wait(int sweeps) {
-    for (int i = 0; i < sweeps; ++i) end_sweep();
-  }
-  Eigen::Vector3d confirmed(std::size_t i) const {
-    const PointCloud& cloud = map_.cloud();
-    return map_.origin() + Eigen::Vector3d(cloud.x[i], cloud.y[i], cloud.z[i]);
-  }
-  bool has_near(const Eigen::Vector3d& place, double distance = 0.03) const {
-    for (std::size_t i = 0; i < map_.cloud().size(); ++i) {
-      if ((confirmed(i) - place).norm() < distance) return true;
-    }
-    return false;
-  }
-};
 
 TEST_F(RollingMapTest, KeepsTheMeanOfEachVoxelsPoints) {
   std::mt19937 random(21);
@@ -114,62 +77,6 @@ TEST_F(RollingMapTest, ASweepsReachIsKept) {
   EXPECT_TRUE(has_near(far));
 }
 
-TEST_F(RollingMapTest, APointThatNoOtherSweepConfirmsStaysOutAndGoes) {
-  const Eigen::Vector3d noise(3, 1, 1.5), twice(3, -1, 1.5), beside(3, 4, 1.5), dust(3, -4, 1.5);
-  const Eigen::Vector3d right(kVoxel, 0, 0), up(0, 0, kVoxel);
-  see(noise);
-  see(twice);
-  see(beside);
-  see(dust);
-  end_sweep();
-  EXPECT_EQ(map_.cloud().size(), 0U);
-  EXPECT_EQ(map_.voxels(), 4U);
-  wait(10);
-  see(twice);
-  see(beside + right);
-  see(dust + right);
-  end_sweep();
-  see(beside + up);
-  end_sweep();
-  EXPECT_FALSE(has_near(noise));
-  EXPECT_TRUE(has_near(twice));
-  EXPECT_TRUE(has_near(beside)) << "three sweeps";
-  EXPECT_FALSE(has_near(dust)) << "two grains beside one another";
-  EXPECT_EQ(map_.voxels(), 7U);
-  wait(60);
-  EXPECT_EQ(map_.voxels(), 4U) << "noise and dust are gone";
-  EXPECT_TRUE(has_near(twice));
-  EXPECT_TRUE(has_near(beside));
-}
-
-TEST_F(RollingMapTest, ASweepConfirmsWithASurfaceThatTwoHaveSeen) {
-  const Eigen::Vector3d surface(3, 0, 0.5), right(kVoxel, 0, 0);
-  for (int i = 0; i < 2; ++i) {
-    see(surface);
-    end_sweep();
-  }
-  see(surface + right);
-  end_sweep();
-  EXPECT_TRUE(has_near(surface + right));
-}
-
-TEST_F(RollingMapTest, GrainsDoNotConfirmOneAnother) {
-  const Eigen::Vector3d right(kVoxel, 0, 0), up(0, 0, kVoxel);
-  const Eigen::Vector3d dust(3, 1, 1.5), again(3, -1, 1.5), blade(3, 4, 1.5), grass(3, -4, 1.5);
-  for (int sweep = 0; sweep < 4; ++sweep) {
-    see(dust + (sweep & 1) * right + (sweep >> 1) * up, true);
-    if (sweep < 2) see(again, true);
-    if (sweep < 3) see(blade, true);
-    see(grass + (sweep & 1) * right + (sweep >> 1) * up, sweep == 0);
-    end_sweep();
-  }
-  EXPECT_FALSE(has_near(dust, 0.1)) << "four grains beside one another";
-  EXPECT_FALSE(has_near(again)) << "two grains in the same place";
-  EXPECT_TRUE(has_near(blade)) << "three sweeps have seen it";
-  EXPECT_TRUE(has_near(grass + right)) << "three that are no grains";
-  EXPECT_FALSE(has_near(grass)) << "a grain among them";
-}
-
 TEST_F(RollingMapTest, WhatIsFarIsGatheredAndHandedOutOnceItIsNear) {
   settings_.reach = 18;
   settings_.search_reach = 12;
@@ -187,12 +94,6 @@ TEST_F(RollingMapTest, WhatIsFarIsGatheredAndHandedOutOnceItIsNear) {
   ASSERT_EQ(map_.cloud().size(), 1U);
   EXPECT_TRUE(has_near(far));
   EXPECT_EQ(map_.beams()[0].ended, 3) << "of the beams from afar";
-}
-
-TEST_F(RollingMapTest, PointsOfOneSweepDoNotConfirmOneAnother) {
-  for (int i = 0; i < 10; ++i) see({3 + kVoxel * i, 0, 1.5});
-  end_sweep();
-  EXPECT_EQ(map_.cloud().size(), 0U);
 }
 
 TEST_F(RollingMapTest, ForgetsWhatIsFarOrOld) {
@@ -242,15 +143,6 @@ TEST_F(RollingMapTest, BuildsUpAnewWhenTheClockIsSet) {
 }
 
 // After hours of standing still, too: counts do not wrap.
-TEST_F(RollingMapTest, StaysConfirmedHoweverOftenItIsSeen) {
-  map_ = RollingMap({.voxel = kVoxel, .reach = 12, .max_voxels = 16});
-  for (int i = 0; i < 140'000; ++i) {
-    see({3, 0, 0});
-    end_sweep();
-    ASSERT_EQ(map_.cloud().size(), i > 0 ? 1U : 0U) << i;
-  }
-}
-
 TEST_F(RollingMapTest, CountsTheBeamsThatEndedInAVoxelAndThoseThatPassedIt) {
   const Eigen::Vector3d lidar(0, 0, 1), place(3.02, 0.02, 0.035);
   const auto along = (place - lidar).normalized();
