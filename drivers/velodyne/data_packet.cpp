@@ -1,5 +1,6 @@
 #include "scree/drivers/velodyne/data_packet.hpp"
 
+#include "scree/core/sweep.hpp"
 #include "scree/drivers/velodyne/lasers.hpp"
 #include "trigonometry.hpp"
 
@@ -196,10 +197,11 @@ void PacketDecoder::decode_block(const std::uint8_t* block, unsigned azimuth, fl
     const float cos_azimuth = cos_start * cos_angle - sin_start * sin_angle;
     const float sin_azimuth = sin_start * cos_angle + cos_start * sin_angle;
 
-    const float horizontal = range * cos_elevation_[i];
+    const float way = range == 0.0F ? kNoReturnRange : range;
+    const float horizontal = way * cos_elevation_[i];
     shots.x[first + i] = horizontal * cos_azimuth;
     shots.y[first + i] = -(horizontal * sin_azimuth);  // azimuth grows clockwise
-    shots.z[first + i] = range * sin_elevation_[i] + correction_[i];
+    shots.z[first + i] = way * sin_elevation_[i] + correction_[i];
   }
 }
 

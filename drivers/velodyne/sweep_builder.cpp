@@ -55,13 +55,17 @@ void SweepBuilder::add(const Shots& shots, std::int64_t device_ns, std::int64_t 
     }
     last_shot_ns_ = shot_ns;
     const float range = shots.range[shot], reflectivity = shots.reflectivity[shot];
-    if (range == 0.0F) continue;
+    const Eigen::Vector3f at(shots.x[shot], shots.y[shot], shots.z[shot]);
+    const auto since_begin_ns = static_cast<std::int32_t>(shot_ns - begin_ns_);
+    if (range == 0.0F) {
+      if (!second) sweep_.empty.push_back({at, since_begin_ns});
+      continue;
+    }
     if (second) {
       const std::size_t first = shots.firing_order[i - 1];
       if (shots.range[first] == range && shots.reflectivity[first] == reflectivity) continue;
     }
-    if (!sweep_.push_back({shots.x[shot], shots.y[shot], shots.z[shot]}, reflectivity,
-                          static_cast<std::int32_t>(shot_ns - begin_ns_), laser_of(shot))) {
+    if (!sweep_.push_back(at, reflectivity, since_begin_ns, laser_of(shot))) {
       ++sweep_.dropped;
       continue;
     }
@@ -75,8 +79,7 @@ void SweepBuilder::finish() {
   if (!open_) return;
   open_ = false;
   const std::int64_t end_ns = sweep_.points.empty() ? last_shot_ns_ : last_return_ns_;
-  const auto length = static_cast<std::int32_t>(end_ns - begin_ns_);
-  for (std::int32_t& time : sweep_.time_ns) time -= length;
+  sweep_.shift(-static_cast<std::int32_t>(end_ns - begin_ns_));
   sweep_.end_ns = end_ns + to_host_ns_;
   sweep_.is_whole = begins_at_cut_ && ends_at_cut_;
   begins_at_cut_ = std::exchange(ends_at_cut_, false);

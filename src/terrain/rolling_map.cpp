@@ -13,6 +13,9 @@ namespace {
 /// Beams that went through a voxel since it was hit last: it has moved away.
 constexpr std::uint16_t kMostPassed = 8;
 
+/// Of this many beams one is followed.
+constexpr std::uint16_t kEvery = 4;
+
 }  // namespace
 
 RollingMap::RollingMap(const MapSettings& settings)
@@ -160,12 +163,25 @@ void RollingMap::add(const DeskewedSweep& sweep, const Pose& pose, std::int64_t 
   gather_cloud(translation);
 }
 
-/// Follows some of the beams, others each sweep, to shortly before what they hit. What has moved
-/// away must stand clear of the hit, for poses err; grass is counted nearer to it. Through grass as
-/// many beams pass below a blade as above it, over a rock only above: those below count for both.
+/// Follows some of the beams, others each sweep. Those that came back from nothing count where they
+/// went up: downwards lies ground that was too dark or too far.
 void RollingMap::see_through(const DeskewedSweep& sweep, const Eigen::Matrix3f& rotation,
                              const Eigen::Vector3f& translation, float reach) {
-  constexpr std::uint16_t kEvery = 4;
+  for (std::size_t i = sweep_ % kEvery; i < sweep.points.size(); i += kEvery) {
+    const Eigen::Vector3f hit(sweep.points.x[i], sweep.points.y[i], sweep.points.z[i]);
+    follow(rotation * sweep.origins[i] + translation, rotation * (hit - sweep.origins[i]), reach);
+  }
+  for (std::size_t i = sweep_ % kEvery; i < sweep.empty.size(); i += kEvery) {
+    const EmptyBeam& empty = sweep.empty[i];
+    const Eigen::Vector3f beam = rotation * (empty.end - empty.origin);
+    if (beam.z() > 0) follow(rotation * empty.origin + translation, beam, reach);
+  }
+}
+
+/// Follows a beam to shortly before what it hit. What has moved away must stand clear of the hit,
+/// for poses err; grass is counted nearer to it. Through grass as many beams pass below a blade as
+/// above it, over a rock only above: those below count for both.
+void RollingMap::follow(const Eigen::Vector3f& from, const Eigen::Vector3f& beam, float reach) {
   constexpr float kClear = 0.3F, kClearShare = 0.08F;   // before the hit: metres, and of the range
   constexpr float kBeam = 0.6F;                         // of a voxel: this near a beam hits it
   constexpr float kFartherOn = 0.12F, kThrough = 0.4F;  // metres behind it, and of a voxel
@@ -173,31 +189,26 @@ void RollingMap::see_through(const DeskewedSweep& sweep, const Eigen::Matrix3f& 
   const auto search_reach = static_cast<float>(settings_.search_reach);
   const Eigen::Vector3f shift = origin_.cast<float>();
   const float near = kBeam * voxel_size, through = kThrough * voxel_size;
-  for (std::size_t i = sweep_ % kEvery; i < sweep.points.size(); i += kEvery) {
-    const Eigen::Vector3f from = rotation * sweep.origins[i] + translation;
-    const Eigen::Vector3f hit(sweep.points.x[i], sweep.points.y[i], sweep.points.z[i]);
-    const Eigen::Vector3f beam = rotation * (hit - sweep.origins[i]);
-    const float range = beam.norm();
-    const float end = std::min(range - std::max(kClear, kClearShare * range), reach);
-    const Eigen::Vector3f along = beam / range;
-    for (float way = 0; way < std::min(end, search_reach); way += FreeSpace::kCell) {
-      free_space_.pass(from + way * along + shift, sweep_);
-    }
-    std::uint32_t last = 0;
-    const float grass_end = std::min(range - kFartherOn, reach);
-    for (float way = 0; way < grass_end; way += voxel_size) {
-      const Key key = key_of(from + way * along);
-      if (voxels_around(key) == 0) continue;
-      const std::uint32_t number = index_[slot_of(key)];
-      if (number == 0 || number == last) continue;
-      last = number;
-      Voxel& voxel = voxels_[number - 1];
-      const Eigen::Vector3f off = voxel.mean - from;
-      const Eigen::Vector3f aside = off - off.dot(along) * along;  // from the beam to the mean
-      const float distance = aside.norm();
-      if (distance < through && aside.z() > 0) voxel.beams.passed += 2 * kEvery;
-      if (distance < near && way < end && voxel.last_sweep != sweep_) ++voxel.passed;
-    }
+  const float range = beam.norm();
+  const float end = std::min(range - std::max(kClear, kClearShare * range), reach);
+  const Eigen::Vector3f along = beam / range;
+  for (float way = 0; way < std::min(end, search_reach); way += FreeSpace::kCell) {
+    free_space_.pass(from + way * along + shift, sweep_);
+  }
+  std::uint32_t last = 0;
+  const float grass_end = std::min(range - kFartherOn, reach);
+  for (float way = 0; way < grass_end; way += voxel_size) {
+    const Key key = key_of(from + way * along);
+    if (voxels_around(key) == 0) continue;
+    const std::uint32_t number = index_[slot_of(key)];
+    if (number == 0 || number == last) continue;
+    last = number;
+    Voxel& voxel = voxels_[number - 1];
+    const Eigen::Vector3f off = voxel.mean - from;
+    const Eigen::Vector3f aside = off - off.dot(along) * along;  // from the beam to the mean
+    const float distance = aside.norm();
+    if (distance < through && aside.z() > 0) voxel.beams.passed += 2 * kEvery;
+    if (distance < near && way < end && voxel.last_sweep != sweep_) ++voxel.passed;
   }
 }
 

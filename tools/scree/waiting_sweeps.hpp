@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -45,11 +46,12 @@ public:
 
 private:
   static Sweep copy(const Sweep& sweep) {
-    Sweep copied(sweep.points.size());
+    Sweep copied(std::max(sweep.points.size(), sweep.empty.size()));
     for (std::size_t i = 0; i < sweep.points.size(); ++i) {
       copied.push_back({sweep.points.x[i], sweep.points.y[i], sweep.points.z[i]},
                        sweep.points.reflectivity[i], sweep.time_ns[i], sweep.laser[i]);
     }
+    for (const EmptyShot& shot : sweep.empty) copied.empty.push_back(shot);
     copied.end_ns = sweep.end_ns;
     copied.packets = sweep.packets;
     copied.dropped = sweep.dropped;

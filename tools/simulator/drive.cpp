@@ -168,8 +168,7 @@ bool DriveFeed::next(Sweep& sweep, std::initializer_list<SyncBuffer*> sensors) {
       const SimulatedShot& shot = lidar_.shots()[shot_];
       // A firing begins before the turn ends as a whole or not at all.
       if (shot_ % velodyne::kLasers == 0 && lidar_.turns(shot.t_ns) >= turns_) {
-        for (std::int32_t& time : sweep.time_ns)
-          time -= static_cast<std::int32_t>(last_ns_ - begin_ns_);
+        sweep.shift(-static_cast<std::int32_t>(last_ns_ - begin_ns_));
         sweep.end_ns = last_ns_;
         begin_ns_ = shot.t_ns;
         feed_imu(sweep.end_ns + 2 * kEncoderStepNs, sensors);
@@ -177,9 +176,14 @@ bool DriveFeed::next(Sweep& sweep, std::initializer_list<SyncBuffer*> sensors) {
         return true;
       }
       last_ns_ = shot.t_ns;
-      if (shot.range <= 0 || is_lost_) continue;
-      sweep.push_back(lidar_.point_of(shot_).cast<float>(), shot.reflectivity,
-                      static_cast<std::int32_t>(shot.t_ns - begin_ns_), shot_ % velodyne::kLasers);
+      if (is_lost_) continue;
+      const Eigen::Vector3f at = lidar_.point_of(shot_).cast<float>();
+      const auto since_begin_ns = static_cast<std::int32_t>(shot.t_ns - begin_ns_);
+      if (shot.range > 0) {
+        sweep.push_back(at, shot.reflectivity, since_begin_ns, shot_ % velodyne::kLasers);
+      } else {
+        sweep.empty.push_back({at, since_begin_ns});
+      }
     }
     lidar_.advance();
     observer_.watch(lidar_);

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "scree/core/sweep.hpp"
 #include "scree/drivers/velodyne/lasers.hpp"
 
 namespace scree {
@@ -98,7 +99,8 @@ Eigen::Matrix3d SimulatedLidar::axes(std::size_t laser, std::int64_t t_ns) const
 
 Eigen::Vector3d SimulatedLidar::point_of(std::size_t shot) const {
   const std::size_t laser = shot % kLasers;
-  return static_cast<double>(shots_[shot].range) * axes(laser, shots_[shot].t_ns).col(0) +
+  const float range = shots_[shot].range > 0 ? shots_[shot].range : kNoReturnRange;
+  return static_cast<double>(range) * axes(laser, shots_[shot].t_ns).col(0) +
          Eigen::Vector3d(0, 0, lasers_[laser].origin_z);
 }
 

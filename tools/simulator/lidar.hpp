@@ -68,7 +68,8 @@ public:
   std::int64_t packet_end_ns() const { return packet_ns_ + packet_duration_ns(settings_.mode); }
   /// Where the motor stands at a time, turns.
   double turns(std::int64_t t_ns) const;
-  /// Direction of a shot in the `lidar` frame: what the sensor's model would make of its range.
+  /// Where a shot ended, `lidar` frame: what the sensor's model makes of its range, kNoReturnRange
+  /// without return.
   Eigen::Vector3d point_of(std::size_t shot) const;
 
   /// The last packet as the sensor sends it: 1206 bytes.

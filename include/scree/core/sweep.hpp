@@ -9,18 +9,29 @@
 
 namespace scree {
 
+/// Where shots without return are taken to end: farther than any sensor sees, metres.
+inline constexpr float kNoReturnRange = 1000;
+
+/// A shot that came back from nothing.
+struct EmptyShot {
+  Eigen::Vector3f end;       ///< kNoReturnRange along the beam, metres
+  std::int32_t time_ns = 0;  ///< as of points; above zero after the last of them
+};
+
 /// One turn of the lidar: its returns in firing order, in the `lidar` frame.
 struct Sweep {
   std::int64_t end_ns = 0;            ///< host time of the last point
   PointCloud points;                  ///< `lidar` frame, metres
   FixedVector<std::int32_t> time_ns;  ///< of each point, relative to end_ns, zero or below
   FixedVector<std::uint8_t> laser;    ///< of each point: its number in the sensor, 0 to 15
+  FixedVector<EmptyShot> empty;       ///< in firing order, `lidar` frame; what fits
   std::uint32_t packets = 0;          ///< data packets that gave it points
   std::uint32_t dropped = 0;          ///< points that did not fit
   bool is_whole = true;               ///< a full turn, unlike a lidar's first sweep
 
   Sweep() = default;
-  explicit Sweep(std::size_t capacity) : points(capacity), time_ns(capacity), laser(capacity) {}
+  explicit Sweep(std::size_t capacity)
+      : points(capacity), time_ns(capacity), laser(capacity), empty(capacity) {}
 
   /// @param at metres, `lidar` frame
   /// False when full; the point is then not taken.
@@ -29,10 +40,16 @@ struct Sweep {
     return points.push_back(at.x(), at.y(), at.z(), reflectivity) && time_ns.push_back(t_ns) &&
            laser.push_back(static_cast<std::uint8_t>(laser_number));
   }
+  /// Moves all its times.
+  void shift(std::int32_t by_ns) {
+    for (std::int32_t& time : time_ns) time += by_ns;
+    for (EmptyShot& shot : empty) shot.time_ns += by_ns;
+  }
   void clear() {
     points.clear();
     time_ns.clear();
     laser.clear();
+    empty.clear();
     end_ns = 0;
     packets = dropped = 0;
   }

@@ -90,6 +90,7 @@ private:
   void forget(const Pose& pose);
   void see_through(const DeskewedSweep& sweep, const Eigen::Matrix3f& rotation,
                    const Eigen::Vector3f& translation, float reach);
+  void follow(const Eigen::Vector3f& from, const Eigen::Vector3f& beam, float reach);
   bool is_confirmed(const Voxel& voxel) const;
   void gather_cloud(const Eigen::Vector3f& here);
 

@@ -102,6 +102,24 @@ TEST_F(DeskewTest, IsTheTransformOfEachPointByItself) {
   }
 }
 
+TEST_F(DeskewTest, MovesBeamsWithoutReturnToo) {
+  for (int i = 0; i <= 10; ++i) {
+    const Eigen::Vector3f along =
+        Eigen::Vector3f(1, 0.2F * static_cast<float>(i), 0.3F).normalized();
+    sweep_.empty.push_back({kNoReturnRange * along, -9'000'000 * (10 - i)});
+  }
+  follow();
+  ASSERT_EQ(out_.empty.size(), sweep_.empty.size());
+  const Pose end = drive_.base(kEnd);
+  for (std::size_t i = 0; i < sweep_.empty.size(); ++i) {
+    const double t = kEnd + sweep_.empty[i].time_ns * 1e-9;
+    const Pose then = test::relative(end, lidar_at(drive_, lidar_, t));
+    const Eigen::Vector3d expected = then * sweep_.empty[i].end.cast<double>();
+    EXPECT_LT((out_.empty[i].end.cast<double>() - expected).norm(), 0.05) << i;
+    EXPECT_LT((out_.empty[i].origin.cast<double>() - then.translation).norm(), 2e-4) << i;
+  }
+}
+
 TEST_F(DeskewTest, LeavesOutWhatIsNearOrFarOrNoNumber) {
   lidar_.min_range = 1;
   lidar_.max_range = 10;

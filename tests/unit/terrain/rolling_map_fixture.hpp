@@ -33,6 +33,12 @@ protected:
     sweep_.scatter.push_back(kScatter);
     sweep_.is_grain.push_back(is_grain ? 1 : 0);
   }
+  /// A beam from the lidar into the sky, or what else gives no return.
+  void see_nothing(const Eigen::Vector3d& along) {
+    const Eigen::Vector3f origin(0, 0, 1);
+    const Eigen::Vector3d end = kNoReturnRange * (pose_.rotation.conjugate() * along.normalized());
+    sweep_.empty.push_back({origin, origin + end.cast<float>()});
+  }
   void end_sweep(double reach = std::numeric_limits<double>::infinity()) {
     map_.add(sweep_, pose_, now_ns_ += kTurnNs, reach);
     sweep_.clear();

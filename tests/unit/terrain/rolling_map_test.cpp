@@ -261,5 +261,23 @@ TEST_F(RollingMapTest, AllocatesNothing) {
   EXPECT_EQ(test::allocations(), before);
 }
 
+TEST_F(RollingMapTest, WhatBeamsIntoTheSkyPassIsForgotten) {
+  const Eigen::Vector3d lidar(0, 0, 1), gone(3, 1, 1.4), low(3, -1, 0.6);
+  for (int i = 0; i < 10; ++i) {
+    see(gone);
+    see(low);
+    end_sweep();
+  }
+  EXPECT_TRUE(has_near(gone) && has_near(low));
+  for (int i = 0; i < 40; ++i) {
+    see_nothing(gone - lidar);
+    see_nothing(low - lidar);
+    end_sweep();
+  }
+  EXPECT_FALSE(has_near(gone));
+  EXPECT_EQ(map_.sight(gone), Sight::empty);
+  EXPECT_TRUE(has_near(low)) << "a beam lost on its way down may have met dark ground";
+}
+
 }  // namespace
 }  // namespace scree

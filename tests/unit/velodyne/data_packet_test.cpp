@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "packet_builder.hpp"
+#include "scree/core/sweep.hpp"
 #include "scree/drivers/velodyne/lasers.hpp"
 
 namespace scree::velodyne {
@@ -105,6 +106,20 @@ TEST(PacketDecoder, RangeAndReflectivityAreTheWires) {
   for (std::size_t shot = 0; shot < kShots; ++shot) {
     EXPECT_EQ(shots.range[shot], static_cast<float>(65535 - 170 * static_cast<int>(shot)) / 500.0F);
     EXPECT_EQ(shots.reflectivity[shot], static_cast<float>(shot % 256));
+  }
+}
+
+TEST(PacketDecoder, AShotWithoutReturnLiesFarOffAlongItsBeam) {
+  PacketBuilder packet;
+  packet.turn(12345, 40);
+  const Shots shots = decode(packet);
+  const std::vector<double> azimuths = turned(123.45, 0.40, false), steps(12, 0.40);
+  for (std::size_t shot = 0; shot < kShots; ++shot) {
+    const Reference expected(azimuths, steps, shot, 1000, false, kVlp16Lasers);
+    ASSERT_EQ(shots.range[shot], 0);
+    ASSERT_NEAR(shots.x[shot], expected.x, 1e-3);
+    ASSERT_NEAR(shots.y[shot], expected.y, 1e-3);
+    ASSERT_NEAR(shots.z[shot], expected.z, 1e-3);
   }
 }
 
@@ -252,7 +267,8 @@ TEST(PacketDecoder, AnyBytesThatPassTheCheckDecodeToFiniteNumbers) {
     ASSERT_EQ(check_data_packet(packet.bytes(), LidarModel::vlp16), Refusal::none);
     decoder.decode(packet.bytes(), shots);
     for (std::size_t i = 0; i < kShots; ++i) {
-      ASSERT_LT(std::hypot(shots.x[i], shots.y[i], shots.z[i]), 132.0F);
+      const float farthest = shots.range[i] > 0 ? 132.0F : 1.001F * kNoReturnRange;
+      ASSERT_LT(std::hypot(shots.x[i], shots.y[i], shots.z[i]), farthest);
       ASSERT_TRUE(shots.azimuth[i] >= 0.0F && shots.azimuth[i] < 36000.0F);
     }
   }

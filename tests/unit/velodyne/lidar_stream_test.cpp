@@ -362,6 +362,36 @@ TEST(LidarStream, NamesTheLaserOfEachPoint) {
   }
 }
 
+TEST(LidarStream, HandsOutTheShotsWithoutReturn) {
+  for (const ReturnMode mode : {ReturnMode::strongest, ReturnMode::dual}) {
+    int sweeps = 0;
+    LidarStream stream({}, [&](Sweep& sweep) {
+      if (!sweep.is_whole) return;
+      ++sweeps;
+      // 16 lasers a firing of 55.296 us; every fourth has no return.
+      ASSERT_NEAR(static_cast<double>(sweep.points.size()), 0.75 * 28935, 60);
+      ASSERT_NEAR(static_cast<double>(sweep.empty.size()), 0.25 * 28935, 60);
+      std::int32_t before_ns = sweep.time_ns[0] - 1'000'000;
+      for (const EmptyShot& shot : sweep.empty) {
+        ASSERT_NEAR(shot.end.norm(), kNoReturnRange, 0.1);
+        ASSERT_GE(shot.time_ns, before_ns);
+        ASSERT_LT(shot.time_ns, 1'000'000);
+        before_ns = shot.time_ns;
+      }
+    });
+    Sensor sensor;
+    sensor.mode = mode;
+    for (int i = 0; i < 600; ++i, sensor.skip()) {
+      PacketBuilder packet = sensor.packet();
+      for (std::size_t shot = 0; shot < kShots; ++shot) {
+        if (laser_of(shot) % 4 == 0) packet.shot(shot, 0, 0);
+      }
+      stream.take(packet.bytes(), kEpoch + sensor.elapsed_ns());
+    }
+    EXPECT_GE(sweeps, 2);
+  }
+}
+
 TEST(LidarStream, SurvivesAnyBytes) {
   std::mt19937 random(9);
   Sensor sensor;

@@ -31,7 +31,7 @@ template <class T>
 using PerShot = std::array<T, kShots>;
 
 /// The shots of a packet, one array a quantity, in the order of the wire: 32 a block, laser id in
-/// the firing order. A shot without return has range 0, and its coordinates mean nothing.
+/// the firing order. A shot without return has range 0 and lies kNoReturnRange off.
 struct Shots {
   PerShot<float> x, y, z;       ///< metres, `lidar` frame
   PerShot<float> range;         ///< metres; 0 is no return
