@@ -5,17 +5,43 @@ namespace {
 
 constexpr float kInverse = 1 / FreeSpace::kCell;
 
+/// Beams after which both counts are halved: what comes to a place that was long free shows soon.
+constexpr int kMostBeams = 2048;
+
 }  // namespace
 
-void FreeSpace::pass(const Eigen::Vector3f& place, std::uint32_t sweep) {
+FreeSpace::Cell& FreeSpace::cell_for(const Eigen::Vector3f& place) {
   const Box::Place there = Box::place(place, kInverse);
-  cells_[there.index()] = {there, sweep};
+  Cell& cell = cells_[there.index()];
+  if (cell.place != there) cell = {.place = there};
+  if (cell.ended + cell.passed >= kMostBeams) {
+    cell.ended /= 2;
+    cell.passed /= 2;
+  }
+  return cell;
+}
+
+void FreeSpace::pass(const Eigen::Vector3f& place, std::uint32_t sweep, std::uint16_t beams) {
+  Cell& cell = cell_for(place);
+  cell.sweep = sweep;
+  cell.passed += beams;
+}
+
+void FreeSpace::end(const Eigen::Vector3f& place) {
+  ++cell_for(place).ended;
 }
 
 std::uint32_t FreeSpace::last_passed(const Eigen::Vector3f& place) const {
   const Box::Place there = Box::place(place, kInverse);
   const Cell& cell = cells_[there.index()];
   return cell.place == there ? cell.sweep : 0;
+}
+
+float FreeSpace::ended_share(const Eigen::Vector3f& place) const {
+  const Box::Place there = Box::place(place, kInverse);
+  const Cell& cell = cells_[there.index()];
+  if (cell.place != there || cell.ended + cell.passed == 0) return 1;
+  return static_cast<float>(cell.ended) / static_cast<float>(cell.ended + cell.passed);
 }
 
 }  // namespace scree

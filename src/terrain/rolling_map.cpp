@@ -134,6 +134,8 @@ void RollingMap::add(const DeskewedSweep& sweep, const Pose& pose, std::int64_t 
   const Eigen::Matrix3f rotation = pose.rotation.toRotationMatrix().cast<float>();
   const Eigen::Vector3f translation = (pose.translation - origin_).cast<float>();
   const auto reach = static_cast<float>(std::min(settings_.reach, reach_of_sweep));
+  const auto search_reach = static_cast<float>(settings_.search_reach);
+  const Eigen::Vector3f shift = origin_.cast<float>();
   constexpr std::uint16_t kMost = 40;
   for (std::size_t i = 0; i < sweep.points.size(); ++i) {
     const Eigen::Vector3f seen(sweep.points.x[i], sweep.points.y[i], sweep.points.z[i]);
@@ -144,6 +146,7 @@ void RollingMap::add(const DeskewedSweep& sweep, const Pose& pose, std::int64_t 
       ++dropped_;
       continue;
     }
+    if (seen.squaredNorm() <= search_reach * search_reach) free_space_.end(point + shift);
     if (voxel->hits < kMost) {
       ++voxel->hits;
       voxel->grains += sweep.is_grain[i];
@@ -193,7 +196,7 @@ void RollingMap::follow(const Eigen::Vector3f& from, const Eigen::Vector3f& beam
   const float end = std::min(range - std::max(kClear, kClearShare * range), reach);
   const Eigen::Vector3f along = beam / range;
   for (float way = 0; way < std::min(end, search_reach); way += FreeSpace::kCell) {
-    free_space_.pass(from + way * along + shift, sweep_);
+    free_space_.pass(from + way * along + shift, sweep_, kEvery);
   }
   std::uint32_t last = 0;
   const float grass_end = std::min(range - kFartherOn, reach);
@@ -279,13 +282,30 @@ bool RollingMap::is_confirmed(const Voxel& voxel) const {
   return false;
 }
 
+/// Of the beams that come to dust few end there, now here, now there, and it touches nothing solid,
+/// as a blade's tip does. What many ended at is none, whatever went past it.
+bool RollingMap::is_dust(const Voxel& voxel) const {
+  constexpr std::uint16_t kMany = 8;
+  constexpr float kThin = 0.03F, kSolid = 0.1F;  // share of the beams that end in a coarse cell
+  if (voxel.hits >= kMany) return false;
+  const Eigen::Vector3f place = voxel.mean + origin_.cast<float>();
+  if (free_space_.ended_share(place) >= kThin) return false;
+  for (const float side : {-FreeSpace::kCell, FreeSpace::kCell}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const float share = free_space_.ended_share(place + side * Eigen::Vector3f::Unit(axis));
+      if (share >= kSolid && share < 1) return false;  // a grain may be all that came to a cell
+    }
+  }
+  return true;
+}
+
 void RollingMap::gather_cloud(const Eigen::Vector3f& here) {
   cloud_.clear();
   beams_.clear();
   const auto reach = static_cast<float>(settings_.search_reach);
   for (const Voxel& voxel : voxels_) {
     const bool is_far = (voxel.mean - here).squaredNorm() > reach * reach;
-    if (is_far || !is_confirmed(voxel)) continue;
+    if (is_far || is_dust(voxel) || !is_confirmed(voxel)) continue;
     cloud_.push_back(voxel.mean.x(), voxel.mean.y(), voxel.mean.z(), voxel.reflectivity);
     beams_.push_back(voxel.beams);
   }

@@ -20,8 +20,8 @@ namespace scree {
 
 /// The ground around the robot, put together of its sweeps: voxels in a frame of its own, around
 /// the robot, bounded in number, reach and age. A voxel keeps the mean of its points. Points that
-/// no second sweep confirms stay out of the cloud; what beams pass through again and again is
-/// forgotten.
+/// no second sweep confirms stay out of the cloud, and so does what hangs where nearly all beams
+/// go through; what beams pass through again and again is forgotten.
 class RollingMap {
 public:
   explicit RollingMap(const MapSettings& settings);
@@ -92,6 +92,7 @@ private:
                    const Eigen::Vector3f& translation, float reach);
   void follow(const Eigen::Vector3f& from, const Eigen::Vector3f& beam, float reach);
   bool is_confirmed(const Voxel& voxel) const;
+  bool is_dust(const Voxel& voxel) const;
   void gather_cloud(const Eigen::Vector3f& here);
 
   MapSettings settings_;

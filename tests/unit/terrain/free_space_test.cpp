@@ -55,5 +55,44 @@ TEST(FreeSpace, APlaceTakesOverTheMemoryOfOneFarAway) {
   EXPECT_EQ(space.last_passed(here), 0U);
 }
 
+TEST(FreeSpace, CountsTheBeamsThatEnd) {
+  FreeSpace space;
+  const Eigen::Vector3f place(1, 1, 0.1F), other(1, 1, 0.4F);
+  EXPECT_EQ(space.ended_share(place), 1) << "no beam came there";
+  space.pass(place, 7, 3);
+  EXPECT_EQ(space.ended_share(place), 0);
+  space.end(place);
+  space.end(other);
+  EXPECT_EQ(space.ended_share(place), 0.25F);
+  EXPECT_EQ(space.ended_share(other), 1);
+  EXPECT_EQ(space.last_passed(place), 7U);
+  EXPECT_EQ(space.last_passed(other), 0U) << "none went through";
+  space.end(place + Eigen::Vector3f(32, 0, 0));
+  EXPECT_EQ(space.ended_share(place), 1) << "forgotten";
+}
+
+TEST(FreeSpace, ASmallShareIsKeptOverMillionsOfBeams) {
+  FreeSpace space;
+  const Eigen::Vector3f place(1, 1, 0.1F);
+  for (int i = 0; i < 1'000'000; ++i) {
+    if (i % 20 == 0) {
+      space.end(place);
+    } else {
+      space.pass(place, 1);
+    }
+    if (i > 1000) {
+      ASSERT_NEAR(space.ended_share(place), 0.05, 0.002);
+    }
+  }
+}
+
+TEST(FreeSpace, WhatComesToAPlaceLongFreeShowsAfterAHundredBeams) {
+  FreeSpace space;
+  const Eigen::Vector3f place(1, 1, 0.1F);
+  for (int i = 0; i < 1'000'000; ++i) space.pass(place, 1, 4);
+  for (int i = 0; i < 100; ++i) space.end(place);
+  EXPECT_GT(space.ended_share(place), 0.045F);
+}
+
 }  // namespace
 }  // namespace scree

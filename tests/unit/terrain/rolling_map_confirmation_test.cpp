@@ -61,6 +61,36 @@ TEST_F(RollingMapConfirmation, GrainsDoNotConfirmOneAnother) {
   EXPECT_FALSE(has_near(grass)) << "a grain among them";
 }
 
+TEST_F(RollingMapConfirmation, DustWhereNearlyAllBeamsGoThroughStaysOut) {
+  const Eigen::Vector3d lidar(0, 0, 1), wire(4, 2, 1.36), dust(4, -2, 1.36), tip(4, 0, 1.36);
+  const Eigen::Vector3d right(0, 0.02, 0), up(0, 0, 0.02);
+  for (int sweep = 0; sweep < 20; ++sweep) {
+    for (int column = -5; column <= 5; ++column) {
+      see(wire + column * right);
+      for (int row = -8; row <= 5; ++row) {
+        const Eigen::Vector3d off = column * right + row * up;
+        for (const Eigen::Vector3d& place : {wire, dust, tip}) {
+          if (place != wire || row != 0) see_nothing(place + off - lidar);
+        }
+      }
+      for (int row = 8; row <= 13; ++row) see(tip + column * right - row * up);
+    }
+    if (sweep > 16) {
+      see(dust);
+      see(tip);
+    }
+    end_sweep();
+  }
+  EXPECT_TRUE(has_near(wire));
+  EXPECT_FALSE(has_near(dust, 0.1)) << "three sweeps have seen it, but few beams";
+  EXPECT_TRUE(has_near(tip)) << "it stands on what most beams end at";
+  for (int sweep = 0; sweep < 5; ++sweep) {
+    see(dust);
+    end_sweep();
+  }
+  EXPECT_TRUE(has_near(dust)) << "eight have seen it there: it is none";
+}
+
 TEST_F(RollingMapConfirmation, PointsOfOneSweepDoNotConfirmOneAnother) {
   for (int i = 0; i < 10; ++i) see({3 + kVoxel * i, 0, 1.5});
   end_sweep();
