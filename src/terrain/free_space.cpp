@@ -31,17 +31,21 @@ void FreeSpace::end(const Eigen::Vector3f& place) {
   ++cell_for(place).ended;
 }
 
-std::uint32_t FreeSpace::last_passed(const Eigen::Vector3f& place) const {
+const FreeSpace::Cell* FreeSpace::find(const Eigen::Vector3f& place) const {
   const Box::Place there = Box::place(place, kInverse);
   const Cell& cell = cells_[there.index()];
-  return cell.place == there ? cell.sweep : 0;
+  return cell.place == there && cell.ended + cell.passed > 0 ? &cell : nullptr;
+}
+
+std::uint32_t FreeSpace::last_passed(const Eigen::Vector3f& place) const {
+  const Cell* const cell = find(place);
+  return cell == nullptr ? 0 : cell->sweep;
 }
 
 float FreeSpace::ended_share(const Eigen::Vector3f& place) const {
-  const Box::Place there = Box::place(place, kInverse);
-  const Cell& cell = cells_[there.index()];
-  if (cell.place != there || cell.ended + cell.passed == 0) return 1;
-  return static_cast<float>(cell.ended) / static_cast<float>(cell.ended + cell.passed);
+  const Cell* const cell = find(place);
+  if (cell == nullptr) return 1;
+  return static_cast<float>(cell->ended) / static_cast<float>(cell->ended + cell->passed);
 }
 
 }  // namespace scree

@@ -38,6 +38,8 @@ private:
   };
 
   Cell& cell_for(const Eigen::Vector3f& place);
+  /// Null where no beam came.
+  const Cell* find(const Eigen::Vector3f& place) const;
 
   FixedVector<Cell> cells_;
 };

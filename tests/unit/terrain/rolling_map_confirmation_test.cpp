@@ -97,6 +97,7 @@ TEST_F(RollingMapConfirmation, PointsOfOneSweepDoNotConfirmOneAnother) {
   EXPECT_EQ(map_.cloud().size(), 0U);
 }
 
+// After hours of standing still, too: counts do not wrap.
 TEST_F(RollingMapConfirmation, StaysConfirmedHoweverOftenItIsSeen) {
   map_ = RollingMap({.voxel = kVoxel, .reach = 12, .max_voxels = 16});
   for (int i = 0; i < 140'000; ++i) {

@@ -142,7 +142,6 @@ TEST_F(RollingMapTest, BuildsUpAnewWhenTheClockIsSet) {
   }
 }
 
-// After hours of standing still, too: counts do not wrap.
 TEST_F(RollingMapTest, CountsTheBeamsThatEndedInAVoxelAndThoseThatPassedIt) {
   const Eigen::Vector3d lidar(0, 0, 1), place(3.02, 0.02, 0.035);
   const auto along = (place - lidar).normalized();
