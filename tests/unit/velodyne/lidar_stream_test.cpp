@@ -3,85 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <memory>
 #include <numbers>
 #include <random>
-#include <vector>
 
-#include "packet_builder.hpp"
 #include "scree/core/nanoseconds.hpp"
+#include "turning_sensor.hpp"
 
 namespace scree::velodyne {
 namespace {
-
-constexpr std::int64_t kEpoch = 1'598'612'523 * kSecond;
-
-struct Seen {
-  std::int64_t begin_ns, end_ns;
-  std::size_t points;
-  std::uint32_t packets;
-  bool is_whole;
-};
-
-/// A VLP-16 that turns evenly and sees a wall 5 m away, and the stream that listens to it.
-class Sensor {
-public:
-  explicit Sensor(const LidarSettings& settings = {})
-      : stream_(std::make_unique<LidarStream>(settings, [this](Sweep& sweep) {
-          seen.push_back({sweep.end_ns + (sweep.points.empty() ? 0 : sweep.time_ns[0]),
-                          sweep.end_ns, sweep.points.size(), sweep.packets, sweep.is_whole});
-          for (std::size_t i = 1; i < sweep.time_ns.size(); ++i) {
-            EXPECT_GE(sweep.time_ns[i], sweep.time_ns[i - 1]);
-          }
-          if (!sweep.time_ns.empty()) {
-            EXPECT_EQ(sweep.time_ns.back(), 0);
-          }
-        })) {}
-
-  ReturnMode mode = ReturnMode::strongest;
-  Product product = Product::vlp16;
-  double turns_per_second = 10;
-  std::int64_t stamp_at_start_ns = 100 * kSecond;
-  std::int64_t delay_ns = 100'000;
-  std::vector<Seen> seen;
-
-  PacketBuilder packet() const {
-    PacketBuilder packet;
-    packet.mode(mode).product(product).all_shots(2500, 30);
-    const int pairs = mode == ReturnMode::dual ? 2 : 1;
-    for (std::size_t block = 0; block < kBlocks; ++block) {
-      const auto at = elapsed_ns_ + static_cast<std::int64_t>(block) / pairs * kBlockNs;
-      const double turns = turns_per_second * static_cast<double>(at) * 1e-9;
-      packet.azimuth(block, static_cast<int>(36000 * (turns - std::floor(turns))) % kFullTurn);
-    }
-    packet.timestamp(
-        static_cast<std::uint32_t>((stamp_at_start_ns + elapsed_ns_) / 1000 % kHourUs));
-    return packet;
-  }
-  std::int64_t duration() const { return packet_duration_ns(mode); }
-  void skip() { elapsed_ns_ += duration(); }
-  void send() { send(packet()); }
-  void send(const PacketBuilder& packet) {
-    stream_->take(packet.bytes(), kEpoch + elapsed_ns_ + duration() + delay_ns);
-    skip();
-  }
-  void send_for(double seconds) {
-    for (const auto end = elapsed_ns_ + static_cast<std::int64_t>(seconds * 1e9);
-         elapsed_ns_ < end;) {
-      send();
-    }
-  }
-  LidarStream& stream() { return *stream_; }
-  const LidarCounters& counters() const { return stream_->counters(); }
-  std::uint64_t refused(Refusal reason) const {
-    return counters().refused[static_cast<std::size_t>(reason)];
-  }
-  std::int64_t elapsed_ns() const { return elapsed_ns_; }
-
-private:
-  std::int64_t elapsed_ns_ = 0;
-  std::unique_ptr<LidarStream> stream_;
-};
 
 TEST(LidarStream, CutsATurnWhereTheAzimuthPasses) {
   for (const double rate : {5.0, 10.0, 20.0}) {
@@ -89,7 +18,7 @@ TEST(LidarStream, CutsATurnWhereTheAzimuthPasses) {
       for (const ReturnMode mode : {ReturnMode::strongest, ReturnMode::dual}) {
         LidarSettings settings;
         settings.cut_azimuth_deg = cut;
-        Sensor sensor(settings);
+        TurningSensor sensor(settings);
         sensor.turns_per_second = rate;
         sensor.mode = mode;
         sensor.send_for(2.0);
@@ -119,7 +48,7 @@ TEST(LidarStream, CutsATurnWhereTheAzimuthPasses) {
 }
 
 TEST(LidarStream, DifferentDualReturnsAreTwoPoints) {
-  Sensor sensor;
+  TurningSensor sensor;
   sensor.mode = ReturnMode::dual;
   PacketBuilder packet = sensor.packet();
   packet.shot(0, 2600, 30);
@@ -131,7 +60,7 @@ TEST(LidarStream, DifferentDualReturnsAreTwoPoints) {
 }
 
 TEST(LidarStream, ASensorThatStandsStillGivesSweepsByTime) {
-  Sensor sensor;
+  TurningSensor sensor;
   sensor.turns_per_second = 0;
   sensor.send_for(2.0);
   ASSERT_GE(sensor.seen.size(), 8U);
@@ -143,7 +72,7 @@ TEST(LidarStream, ASensorThatStandsStillGivesSweepsByTime) {
 }
 
 TEST(LidarStream, AWaveringAzimuthAtTheCutMakesNoShreds) {
-  Sensor sensor;
+  TurningSensor sensor;
   sensor.turns_per_second = 0;
   std::mt19937 random(4);
   for (int i = 0; i < 2000; ++i) {
@@ -157,7 +86,7 @@ TEST(LidarStream, AWaveringAzimuthAtTheCutMakesNoShreds) {
 }
 
 TEST(LidarStream, KnowsHowLongThereHasBeenNoReturn) {
-  Sensor sensor;
+  TurningSensor sensor;
   sensor.send_for(0.5);
   EXPECT_LT(sensor.stream().without_return_ns(), kBlockNs);
   const std::int64_t begin = sensor.elapsed_ns();
@@ -169,105 +98,15 @@ TEST(LidarStream, KnowsHowLongThereHasBeenNoReturn) {
 }
 
 TEST(LidarStream, EmptyTurnsAreHandedOutToo) {
-  Sensor sensor;
+  TurningSensor sensor;
   for (int i = 0; i < 200; ++i) sensor.send(sensor.packet().all_shots(0, 0));
   ASSERT_GE(sensor.seen.size(), 2U);
   EXPECT_EQ(sensor.seen[1].points, 0U);
   EXPECT_GT(sensor.seen[1].end_ns, sensor.seen[0].end_ns);
 }
 
-TEST(LidarStream, RunsOnAcrossTheFullHourWithAndWithoutLoss) {
-  for (const int missing : {0, 300}) {
-    Sensor sensor;
-    sensor.stamp_at_start_ns = kHourNs - kSecond;
-    sensor.send_for(0.9);
-    for (int i = 0; i < missing; ++i) sensor.skip();
-    sensor.send_for(1.0);
-    sensor.stream().flush();
-    EXPECT_EQ(sensor.counters().lost, static_cast<std::uint64_t>(missing));
-    EXPECT_EQ(sensor.counters().device_restarts + sensor.counters().host_steps, 0U);
-    for (std::size_t i = 1; i < sensor.seen.size(); ++i) {
-      EXPECT_GT(sensor.seen[i].end_ns, sensor.seen[i - 1].end_ns);
-    }
-    const std::int64_t last_shot =
-        kEpoch + sensor.elapsed_ns() - kFiringNs + std::int64_t{15} * kShotNs;
-    EXPECT_NEAR(static_cast<double>(sensor.seen.back().end_ns - sensor.delay_ns - last_shot), 0,
-                2e3);
-  }
-}
-
-TEST(LidarStream, CountsLossDuplicatesAndLatePackets) {
-  Sensor sensor;
-  for (int i = 0; i < 100; ++i) sensor.send();
-  const PacketBuilder overtaken = sensor.packet();
-  sensor.skip();
-  for (int i = 0; i < 3; ++i) sensor.skip();
-  const PacketBuilder next = sensor.packet();
-  sensor.send(next);
-  EXPECT_EQ(sensor.counters().lost, 4U);
-  sensor.stream().take(next.bytes(), kEpoch + sensor.elapsed_ns());
-  sensor.stream().take(overtaken.bytes(), kEpoch + sensor.elapsed_ns());
-  EXPECT_EQ(sensor.refused(Refusal::duplicate), 1U);
-  EXPECT_EQ(sensor.refused(Refusal::late), 1U);
-  EXPECT_EQ(sensor.counters().accepted, 101U);
-}
-
-TEST(LidarStream, AFieldOfViewSetInTheSensorIsNoLoss) {
-  Sensor sensor;
-  // It looks from 315 to 45 degrees; in between nothing is sent, and a packet is filled up where it
-  // looks again.
-  const auto visible = [](double turns) {
-    const double degrees = 360 * (turns - std::floor(turns));
-    return degrees >= 315 || degrees < 45;
-  };
-  std::int64_t t = 0;
-  for (int i = 0; i < 600; ++i) {
-    PacketBuilder packet;
-    packet.all_shots(2500, 30);
-    for (std::size_t block = 0; block < kBlocks; ++block, t += kBlockNs) {
-      while (!visible(10e-9 * static_cast<double>(t))) t += kBlockNs;
-      if (block == 0) packet.timestamp(static_cast<std::uint32_t>(t / 1000));
-      const double turns = 10e-9 * static_cast<double>(t);
-      packet.azimuth(block, static_cast<int>(36000 * (turns - std::floor(turns))));
-    }
-    sensor.stream().take(packet.bytes(), kEpoch + t);
-  }
-  EXPECT_EQ(sensor.counters().lost, 0U);
-  EXPECT_EQ(sensor.counters().accepted, 600U);
-}
-
-TEST(LidarStream, ARestartBeginsANewSweep) {
-  Sensor sensor;
-  sensor.send_for(1.03);
-  const std::size_t before = sensor.seen.size();
-  sensor.stamp_at_start_ns = -sensor.elapsed_ns();
-  sensor.send_for(0.2);
-  EXPECT_EQ(sensor.counters().device_restarts, 1U);
-  EXPECT_EQ(sensor.counters().lost, 0U);
-  EXPECT_GT(sensor.seen.size(), before);
-  sensor.send_for(0.8);
-  ASSERT_GE(sensor.seen.size(), before + 11);
-  for (std::size_t i = sensor.seen.size() - 8; i < sensor.seen.size(); ++i) {
-    EXPECT_TRUE(sensor.seen[i].is_whole);
-    EXPECT_NEAR(static_cast<double>(sensor.seen[i].end_ns - sensor.seen[i].begin_ns), 1e8, 2e5);
-  }
-}
-
-TEST(LidarStream, AShortCapturePlayedInALoopKeepsItsSweeps) {
-  Sensor sensor;
-  for (int loop = 0; loop < 10; ++loop) {
-    sensor.stamp_at_start_ns = 100 * kSecond - sensor.elapsed_ns();
-    sensor.send_for(0.4);
-  }
-  EXPECT_EQ(sensor.counters().all_refused(), 0U);
-  EXPECT_EQ(sensor.counters().device_restarts, 9U);
-  for (std::size_t i = 1; i < sensor.seen.size(); ++i) {
-    EXPECT_GT(sensor.seen[i].end_ns, sensor.seen[i - 1].end_ns);
-  }
-}
-
 TEST(LidarStream, SaysHowWellItsClockIsKnown) {
-  Sensor sensor;
+  TurningSensor sensor;
   EXPECT_EQ(sensor.stream().clock().state(), ClockState::unsynchronised);
   sensor.send_for(1.5);
   EXPECT_EQ(sensor.stream().clock().state(), ClockState::estimated);
@@ -282,48 +121,6 @@ TEST(LidarStream, SaysHowWellItsClockIsKnown) {
   EXPECT_NEAR(static_cast<double>(late_by % kHourNs), 0, 1000) << "there is no delay in it";
 }
 
-TEST(LidarStream, EarlyFirmwareLosesNothing) {
-  for (const ReturnMode mode : {ReturnMode::strongest, ReturnMode::dual}) {
-    Sensor sensor;
-    sensor.product = Product::hdl32e;
-    sensor.mode = mode;
-    sensor.send();
-    for (int i = 0; i < 3; ++i) sensor.skip();  // with packets lost in between nothing is decided
-    sensor.send();
-    EXPECT_EQ(sensor.counters().accepted, 0U);
-    EXPECT_EQ(sensor.stream().firmware(), Firmware::undecided);
-    sensor.send();
-    EXPECT_EQ(sensor.stream().firmware(), Firmware::early_vlp16);
-    EXPECT_EQ(sensor.counters().accepted, 3U);
-    sensor.send_for(0.5);
-    EXPECT_EQ(sensor.counters().all_refused(), 0U);
-    EXPECT_EQ(sensor.counters().lost, 3U);
-    EXPECT_FALSE(sentence(sensor.stream().firmware()).empty());
-  }
-}
-
-TEST(LidarStream, AnHdl32eIsRefusedAltogether) {
-  Sensor sensor;
-  sensor.product = Product::hdl32e;
-  std::uint32_t stamp = 1000;
-  for (int i = 0; i < 100; ++i, stamp += i % 10 == 0 ? 552 : 553) {
-    const PacketBuilder packet = sensor.packet().timestamp(stamp);
-    if (i % 7 != 1) sensor.stream().take(packet.bytes(), kEpoch + stamp * 1000LL);
-  }
-  EXPECT_EQ(sensor.stream().firmware(), Firmware::foreign);
-  EXPECT_EQ(sensor.counters().accepted, 0U);
-  EXPECT_EQ(sensor.refused(Refusal::timing), 86U - 1U);
-}
-
-TEST(LidarStream, UndecidedPacketsAreRefusedAtTheEnd) {
-  Sensor sensor;
-  sensor.product = Product::hdl32e;
-  sensor.send();
-  sensor.stream().flush();
-  EXPECT_EQ(sensor.refused(Refusal::timing), 1U);
-  EXPECT_TRUE(sensor.seen.empty());
-}
-
 TEST(LidarStream, ASweepMayBeSwappedAway) {
   Sweep mine(kSweepCapacity);
   std::size_t most = 0;
@@ -331,7 +128,7 @@ TEST(LidarStream, ASweepMayBeSwappedAway) {
     std::swap(mine, sweep);
     most = std::max(most, mine.points.size());
   });
-  Sensor sensor;
+  TurningSensor sensor;
   for (int i = 0; i < 400; ++i, sensor.skip()) {
     stream.take(sensor.packet().bytes(), kEpoch + sensor.elapsed_ns());
   }
@@ -353,7 +150,7 @@ TEST(LidarStream, NamesTheLaserOfEachPoint) {
         ASSERT_NEAR(up * 180 / std::numbers::pi, up_deg, 0.2);
       }
     });
-    Sensor sensor;
+    TurningSensor sensor;
     sensor.mode = mode;
     for (int i = 0; i < 400; ++i, sensor.skip()) {
       stream.take(sensor.packet().bytes(), kEpoch + sensor.elapsed_ns());
@@ -379,7 +176,7 @@ TEST(LidarStream, HandsOutTheShotsWithoutReturn) {
         before_ns = shot.time_ns;
       }
     });
-    Sensor sensor;
+    TurningSensor sensor;
     sensor.mode = mode;
     for (int i = 0; i < 600; ++i, sensor.skip()) {
       PacketBuilder packet = sensor.packet();
@@ -390,27 +187,6 @@ TEST(LidarStream, HandsOutTheShotsWithoutReturn) {
     }
     EXPECT_GE(sweeps, 2);
   }
-}
-
-TEST(LidarStream, SurvivesAnyBytes) {
-  std::mt19937 random(9);
-  Sensor sensor;
-  for (int round = 0; round < 20000; ++round) {
-    PacketBuilder packet = sensor.packet();
-    const std::size_t size = random() % 10 == 0 ? random() % kDataPacketSize : kDataPacketSize;
-    const bool mostly_tail = random() % 2 == 0;
-    for (auto flips = random() % 5; flips > 0; --flips) {
-      const std::size_t where =
-          mostly_tail ? kTimestampOffset + random() % 6 : random() % kDataPacketSize;
-      packet.bytes()[where] ^= static_cast<std::uint8_t>(1U << random() % 8);
-    }
-    const auto arrival =
-        kEpoch + sensor.elapsed_ns() + static_cast<std::int64_t>(random() % 100) * 1000;
-    sensor.stream().take(Bytes(packet.bytes()).first(size), arrival);
-    sensor.skip();
-  }
-  sensor.stream().flush();
-  EXPECT_EQ(sensor.counters().accepted + sensor.counters().all_refused(), 20000U);
 }
 
 }  // namespace

@@ -1,0 +1,168 @@
+#include "scree/drivers/velodyne/lidar_stream.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "scree/core/nanoseconds.hpp"
+#include "turning_sensor.hpp"
+
+namespace scree::velodyne {
+namespace {
+
+TEST(LidarStreamFaults, RunsOnAcrossTheFullHourWithAndWithoutLoss) {
+  for (const int missing : {0, 300}) {
+    TurningSensor sensor;
+    sensor.stamp_at_start_ns = kHourNs - kSecond;
+    sensor.send_for(0.9);
+    for (int i = 0; i < missing; ++i) sensor.skip();
+    sensor.send_for(1.0);
+    sensor.stream().flush();
+    EXPECT_EQ(sensor.counters().lost, static_cast<std::uint64_t>(missing));
+    EXPECT_EQ(sensor.counters().device_restarts + sensor.counters().host_steps, 0U);
+    for (std::size_t i = 1; i < sensor.seen.size(); ++i) {
+      EXPECT_GT(sensor.seen[i].end_ns, sensor.seen[i - 1].end_ns);
+    }
+    const std::int64_t last_shot =
+        kEpoch + sensor.elapsed_ns() - kFiringNs + std::int64_t{15} * kShotNs;
+    EXPECT_NEAR(static_cast<double>(sensor.seen.back().end_ns - sensor.delay_ns - last_shot), 0,
+                2e3);
+  }
+}
+
+TEST(LidarStreamFaults, CountsLossDuplicatesAndLatePackets) {
+  TurningSensor sensor;
+  for (int i = 0; i < 100; ++i) sensor.send();
+  const PacketBuilder overtaken = sensor.packet();
+  sensor.skip();
+  for (int i = 0; i < 3; ++i) sensor.skip();
+  const PacketBuilder next = sensor.packet();
+  sensor.send(next);
+  EXPECT_EQ(sensor.counters().lost, 4U);
+  sensor.stream().take(next.bytes(), kEpoch + sensor.elapsed_ns());
+  sensor.stream().take(overtaken.bytes(), kEpoch + sensor.elapsed_ns());
+  EXPECT_EQ(sensor.refused(Refusal::duplicate), 1U);
+  EXPECT_EQ(sensor.refused(Refusal::late), 1U);
+  EXPECT_EQ(sensor.counters().accepted, 101U);
+}
+
+TEST(LidarStreamFaults, AFieldOfViewSetInTheSensorIsNoLoss) {
+  TurningSensor sensor;
+  // It looks from 315 to 45 degrees; in between nothing is sent, and a packet is filled up where it
+  // looks again.
+  const auto visible = [](double turns) {
+    const double degrees = 360 * (turns - std::floor(turns));
+    return degrees >= 315 || degrees < 45;
+  };
+  std::int64_t t = 0;
+  for (int i = 0; i < 600; ++i) {
+    PacketBuilder packet;
+    packet.all_shots(2500, 30);
+    for (std::size_t block = 0; block < kBlocks; ++block, t += kBlockNs) {
+      while (!visible(10e-9 * static_cast<double>(t))) t += kBlockNs;
+      if (block == 0) packet.timestamp(static_cast<std::uint32_t>(t / 1000));
+      const double turns = 10e-9 * static_cast<double>(t);
+      packet.azimuth(block, static_cast<int>(36000 * (turns - std::floor(turns))));
+    }
+    sensor.stream().take(packet.bytes(), kEpoch + t);
+  }
+  EXPECT_EQ(sensor.counters().lost, 0U);
+  EXPECT_EQ(sensor.counters().accepted, 600U);
+}
+
+TEST(LidarStreamFaults, ARestartBeginsANewSweep) {
+  TurningSensor sensor;
+  sensor.send_for(1.03);
+  const std::size_t before = sensor.seen.size();
+  sensor.stamp_at_start_ns = -sensor.elapsed_ns();
+  sensor.send_for(0.2);
+  EXPECT_EQ(sensor.counters().device_restarts, 1U);
+  EXPECT_EQ(sensor.counters().lost, 0U);
+  EXPECT_GT(sensor.seen.size(), before);
+  sensor.send_for(0.8);
+  ASSERT_GE(sensor.seen.size(), before + 11);
+  for (std::size_t i = sensor.seen.size() - 8; i < sensor.seen.size(); ++i) {
+    EXPECT_TRUE(sensor.seen[i].is_whole);
+    EXPECT_NEAR(static_cast<double>(sensor.seen[i].end_ns - sensor.seen[i].begin_ns), 1e8, 2e5);
+  }
+}
+
+TEST(LidarStreamFaults, AShortCapturePlayedInALoopKeepsItsSweeps) {
+  TurningSensor sensor;
+  for (int loop = 0; loop < 10; ++loop) {
+    sensor.stamp_at_start_ns = 100 * kSecond - sensor.elapsed_ns();
+    sensor.send_for(0.4);
+  }
+  EXPECT_EQ(sensor.counters().all_refused(), 0U);
+  EXPECT_EQ(sensor.counters().device_restarts, 9U);
+  for (std::size_t i = 1; i < sensor.seen.size(); ++i) {
+    EXPECT_GT(sensor.seen[i].end_ns, sensor.seen[i - 1].end_ns);
+  }
+}
+
+TEST(LidarStreamFaults, EarlyFirmwareLosesNothing) {
+  for (const ReturnMode mode : {ReturnMode::strongest, ReturnMode::dual}) {
+    TurningSensor sensor;
+    sensor.product = Product::hdl32e;
+    sensor.mode = mode;
+    sensor.send();
+    for (int i = 0; i < 3; ++i) sensor.skip();  // with packets lost in between nothing is decided
+    sensor.send();
+    EXPECT_EQ(sensor.counters().accepted, 0U);
+    EXPECT_EQ(sensor.stream().firmware(), Firmware::undecided);
+    sensor.send();
+    EXPECT_EQ(sensor.stream().firmware(), Firmware::early_vlp16);
+    EXPECT_EQ(sensor.counters().accepted, 3U);
+    sensor.send_for(0.5);
+    EXPECT_EQ(sensor.counters().all_refused(), 0U);
+    EXPECT_EQ(sensor.counters().lost, 3U);
+    EXPECT_FALSE(sentence(sensor.stream().firmware()).empty());
+  }
+}
+
+TEST(LidarStreamFaults, AnHdl32eIsRefusedAltogether) {
+  TurningSensor sensor;
+  sensor.product = Product::hdl32e;
+  std::uint32_t stamp = 1000;
+  for (int i = 0; i < 100; ++i, stamp += i % 10 == 0 ? 552 : 553) {
+    const PacketBuilder packet = sensor.packet().timestamp(stamp);
+    if (i % 7 != 1) sensor.stream().take(packet.bytes(), kEpoch + stamp * 1000LL);
+  }
+  EXPECT_EQ(sensor.stream().firmware(), Firmware::foreign);
+  EXPECT_EQ(sensor.counters().accepted, 0U);
+  EXPECT_EQ(sensor.refused(Refusal::timing), 86U - 1U);
+}
+
+TEST(LidarStreamFaults, UndecidedPacketsAreRefusedAtTheEnd) {
+  TurningSensor sensor;
+  sensor.product = Product::hdl32e;
+  sensor.send();
+  sensor.stream().flush();
+  EXPECT_EQ(sensor.refused(Refusal::timing), 1U);
+  EXPECT_TRUE(sensor.seen.empty());
+}
+
+TEST(LidarStreamFaults, SurvivesAnyBytes) {
+  std::mt19937 random(9);
+  TurningSensor sensor;
+  for (int round = 0; round < 20000; ++round) {
+    PacketBuilder packet = sensor.packet();
+    const std::size_t size = random() % 10 == 0 ? random() % kDataPacketSize : kDataPacketSize;
+    const bool mostly_tail = random() % 2 == 0;
+    for (auto flips = random() % 5; flips > 0; --flips) {
+      const std::size_t where =
+          mostly_tail ? kTimestampOffset + random() % 6 : random() % kDataPacketSize;
+      packet.bytes()[where] ^= static_cast<std::uint8_t>(1U << random() % 8);
+    }
+    const auto arrival =
+        kEpoch + sensor.elapsed_ns() + static_cast<std::int64_t>(random() % 100) * 1000;
+    sensor.stream().take(Bytes(packet.bytes()).first(size), arrival);
+    sensor.skip();
+  }
+  sensor.stream().flush();
+  EXPECT_EQ(sensor.counters().accepted + sensor.counters().all_refused(), 20000U);
+}
+
+}  // namespace
+}  // namespace scree::velodyne
