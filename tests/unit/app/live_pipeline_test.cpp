@@ -21,7 +21,7 @@ namespace scree {
 namespace {
 
 const std::string kCapture = "captures/interop";
-constexpr int kSweeps = 40;
+constexpr int kSweeps = 20;
 
 Settings settings() {
   auto loaded = load_settings(shared(kCapture + "/scree.toml"));
