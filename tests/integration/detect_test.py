@@ -109,8 +109,8 @@ class DetectTest(unittest.TestCase):
         self.scree("simulate", self.path("capture"), "--seconds", "1", "--seed", "3")
         lists = self.detect(self.path("capture"))
         printed = self.scree("detect", self.path("capture")).stdout
-        with open(self.path("lists.jsonl")) as file:
-            self.assertEqual(printed, file.read())
+        with open(self.path("lists.jsonl"), "rb") as file:
+            self.assertEqual(printed.encode(), file.read())
         self.assertIn(len(lists), (10, 11))
         stamps = [each["stamp_ns"] for each in lists]
         self.assertEqual(stamps, sorted(stamps))

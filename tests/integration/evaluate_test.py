@@ -73,18 +73,18 @@ class EvaluateTest(unittest.TestCase):
         if not os.path.isdir(capture):
             self.skipTest(f"the capture is not at {DATA}")
         self.scree("detect", capture, "--out", self.path("lists.jsonl"))
-        ours = self.check_against_reference(
-            os.path.join(capture, "truth.json"), self.path("lists.jsonl")
-        )
+        truth, lists = os.path.join(capture, "truth.json"), self.path("lists.jsonl")
+        ours = self.evaluate(truth, lists)
         self.assertEqual((ours["entries"], ours["covered"]), (81, 81))
         self.assertTrue(ours["counts"])
         self.assertGreater(ours["all"]["f1"], 0.97)
         self.assertLess(ours["pose_error"][0]["final_share_of_way"], 0.01)
         # An obstacle keeps its id: far fewer ids than obstacles reported.
-        with open(self.path("lists.jsonl")) as file:
+        with open(lists) as file:
             obstacles = [each for line in file for each in json.loads(line)["obstacles"]]
         ids = {obstacle["id"] for obstacle in obstacles}
         self.assertLess(len(ids), len(obstacles) / 10)
+        self.check_against_reference(truth, lists)
 
     def test_agrees_with_the_reference_on_a_simulated_capture(self):
         self.scree("simulate", self.path("run"), "--seconds", "2", "--seed", "4")
