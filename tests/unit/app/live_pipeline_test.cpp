@@ -21,7 +21,11 @@ namespace scree {
 namespace {
 
 const std::string kCapture = "captures/interop";
-constexpr int kSweeps = 20;
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr int kSweeps = 20;  // of many times the work; memory and threads are used alike in each
+#else
+constexpr int kSweeps = 40;
+#endif
 
 Settings settings() {
   auto loaded = load_settings(shared(kCapture + "/scree.toml"));
