@@ -122,7 +122,14 @@ void Detector::build_surface(PointView cloud, std::span<const BeamCount> beams) 
   surface_.build(cells_.points(), surface_settings(settings_));
   const float highest = settings_.clearance > 0 ? static_cast<float>(settings_.clearance)
                                                 : std::numeric_limits<float>::infinity();
-  solidity_.build(cloud, beams, surface_, static_cast<float>(settings_.body_height), highest);
+  const auto look_through = [&] {
+    solidity_.build(cloud, beams, surface_, static_cast<float>(settings_.body_height), highest);
+  };
+  look_through();
+  if (solidity_.has_loose()) {
+    surface_.build_below(solidity_.loose(), surface_settings(settings_));
+    look_through();
+  }
   if (!beams.empty()) leave_out_ground_below_edges();
 }
 
@@ -146,9 +153,10 @@ void Detector::choose_candidates() {
   for (std::size_t i = 0; i < points.size(); ++i) {
     height_[i] = points.z[i] - surface_.height(points.x[i], points.y[i]);
     if (settings_.candidates == Candidates::edges) continue;
-    const bool is_body =
-        std::abs(height_[i]) >= least && !surface_.is_ground(points.x[i], points.y[i]);
-    is_candidate_[i] = is_body ? 1 : 0;
+    const std::size_t cell = surface_.cell_at(points.x[i], points.y[i]);
+    // Among grass the ground is seen, and what stands on it.
+    const bool is_ground = surface_.is_ground(cell) && !solidity_.is_loose(cell);
+    is_candidate_[i] = std::abs(height_[i]) >= least && !is_ground ? 1 : 0;
   }
 }
 

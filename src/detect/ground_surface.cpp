@@ -36,6 +36,19 @@ void GroundSurface::build(PointView points, const GroundSurfaceSettings& setting
     lay_out(points, cell_size);
     if (gather(points) >= settings.cell_points || growth == kMostGrowths) break;
   }
+  find_ground(settings);
+}
+
+void GroundSurface::build_below(std::span<const std::uint8_t> loose,
+                                const GroundSurfaceSettings& settings) {
+  constexpr float kLow = 0.05F;  // noise lies lower still
+  for (std::size_t cell = 0; cell < median_.size(); ++cell) {
+    if (loose[cell] != 0) median_[cell] = quantile(cell, kLow);
+  }
+  find_ground(settings);
+}
+
+void GroundSurface::find_ground(const GroundSurfaceSettings& settings) {
   find_smooth_cells(settings.max_slope);
   find_patches(settings.max_slope);
   const bool has_trend = settings.trend_reach > 0;
@@ -92,13 +105,19 @@ float GroundSurface::gather(PointView points) {
   std::size_t occupied = 0;
   for (std::size_t cell = 0; cell < cells; ++cell) {
     if (points_in(cell) > 0) ++occupied;
-    float* const first = z_.begin() + begin_[cell];
-    float* const last = z_.begin() + begin_[cell + 1];
-    float* const middle = first + (last - first) / 2;
-    if (first != last) std::nth_element(first, middle, last);
-    median_[cell] = first == last ? kUnseen : *middle;
+    median_[cell] = quantile(cell, 0.5F);
   }
   return static_cast<float>(points.size()) / static_cast<float>(std::max<std::size_t>(occupied, 1));
+}
+
+float GroundSurface::quantile(std::size_t cell, float share) {
+  float* const first = z_.begin() + begin_[cell];
+  float* const last = z_.begin() + begin_[cell + 1];
+  if (first == last) return kUnseen;
+  float* const place =
+      first + static_cast<std::ptrdiff_t>(share * static_cast<float>(last - first));
+  std::nth_element(first, place, last);
+  return *place;
 }
 
 float GroundSurface::blurred(std::size_t cell) const {

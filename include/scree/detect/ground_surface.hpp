@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
+#include <span>
 
 #include "scree/core/fixed_vector.hpp"
 #include "scree/core/point_cloud.hpp"
@@ -32,6 +33,10 @@ public:
 
   /// @pre finite points, no more than max_points of them
   void build(PointView points, const GroundSurfaceSettings& settings);
+  /// The last build again, but in loose cells what was seen lowest is the height instead of the
+  /// median: below grass the ground goes on. The raster stays.
+  /// @param loose of each cell of the raster, 0 where it is not
+  void build_below(std::span<const std::uint8_t> loose, const GroundSurfaceSettings& settings);
 
   /// Of the last build; any place, also outside: there the nearest cell answers.
   bool is_ground(float x, float y) const { return is_ground(cell_at(x, y)); }
@@ -54,8 +59,12 @@ public:
 
 private:
   void lay_out(PointView points, float cell_size);
+  /// The height below which this share of a cell's points lies; NaN without a point.
+  float quantile(std::size_t cell, float share);
   /// Returns the mean number of points in the cells that have any.
   float gather(PointView points);
+  /// From the heights of the cells.
+  void find_ground(const GroundSurfaceSettings& settings);
   void find_smooth_cells(float max_slope);
   void find_patches(float max_slope);
   void add_trend(float sign, std::initializer_list<FixedVector<float>*> rasters) const;
@@ -69,7 +78,7 @@ private:
   std::size_t columns_ = 0, rows_ = 0;
   FixedVector<std::uint32_t> begin_;  // of each cell's points in z_, and one more
   FixedVector<float> z_;              // of the points, cell by cell
-  FixedVector<float> median_;         // of each cell; NaN where there is no point
+  FixedVector<float> median_;         // of each cell, or its low points; NaN: without a point
   FixedVector<float> smooth_;         // scratch: blurred heights, then the ground's
   FixedVector<std::uint8_t> ground_;
   FixedVector<std::uint32_t> patch_;  // of each cell

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -45,6 +46,9 @@ public:
   /// Whether the ranges scatter, there and in the cells next to it, as they do among blades. At
   /// least six cells are so together, unless they stand alone.
   bool is_loose(std::size_t cell) const { return loose_[cell] != 0; }
+  bool has_loose() const { return std::ranges::find(loose_, 1) != loose_.end(); }
+  /// Of all cells, not 0: is_loose().
+  std::span<const std::uint8_t> loose() const { return {loose_.data(), loose_.size()}; }
 
   /// One more beam ended than was counted: few beams say little.
   static float share(float ended, float passed) { return (ended + 1) / (ended + passed + 1); }

@@ -90,6 +90,34 @@ TEST_P(GroundSurfaceTest, FollowsASmoothHollowDownToThePotholeInIt) {
   EXPECT_FALSE(surface.is_ground(0, 0));
 }
 
+TEST_P(GroundSurfaceTest, GoesOnBelowTheGrassThatSurroundsAHollow) {
+  const auto hollow = [](float x, float y) {
+    return -0.2F * (1 + std::cos(3.14159F * std::min(std::hypot(x, y) / 2.5F, 1.0F)));
+  };
+  const auto is_grass = [](float x, float y) { return std::abs(std::hypot(x, y) - 1.5F) < 0.4F; };
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> blade(0, 0.5F);
+  const PointCloud cloud = seen(
+      [&](float x, float y) {
+        return hollow(x, y) + (is_grass(x, y) ? std::max(blade(random) - 0.25F, 0.0F) : 0.0F);
+      },
+      50'000);
+  GroundSurface surface = surface_of(cloud);
+  EXPECT_GT(surface.height(0, 0), -0.25) << "without being told where grass is";
+  std::vector<std::uint8_t> loose(surface.columns() * surface.rows(), 0);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const float x = cloud.x[i], y = cloud.y[i];
+    if (is_grass(x, y)) loose[surface.cell_at(x, y)] = 1;
+  }
+  GroundSurfaceSettings settings = kSettings;
+  settings.trend_reach = GetParam();
+  surface.build_below(loose, settings);
+  for (float x = -3; x < 3.1F; x += 0.25F) {
+    EXPECT_NEAR(surface.height(x, 0), hollow(x, 0), 0.03) << x;
+  }
+  EXPECT_TRUE(surface.is_ground(0, 0));
+}
+
 TEST_P(GroundSurfaceTest, IsNotMovedBySinglePointsThatBelongToNothing) {
   PointCloud cloud = seen([](float, float) { return 0.0F; });
   for (std::size_t i = 0; i < cloud.size(); i += 1500) cloud.z[i] += i % 2 == 0 ? 1.0F : -0.5F;
