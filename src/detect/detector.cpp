@@ -119,7 +119,8 @@ void Detector::thin(PointView cloud) {
 void Detector::build_surface(PointView cloud, std::span<const BeamCount> beams) {
   cells_.build(thinned_, gradient_.reach());
   if (!settings_.uses_surface()) return;
-  surface_.build(cells_.points(), surface_settings(settings_));
+  const GroundSurfaceSettings ground = surface_settings(settings_);
+  surface_.build(cells_.points(), ground);
   const float highest = settings_.clearance > 0 ? static_cast<float>(settings_.clearance)
                                                 : std::numeric_limits<float>::infinity();
   const auto look_through = [&] {
@@ -127,7 +128,7 @@ void Detector::build_surface(PointView cloud, std::span<const BeamCount> beams) 
   };
   look_through();
   if (solidity_.has_loose()) {
-    surface_.build_below(solidity_.loose(), surface_settings(settings_));
+    surface_.build_below(solidity_.loose(), ground);
     look_through();
   }
   if (!beams.empty()) leave_out_ground_below_edges();

@@ -1,7 +1,8 @@
 #include "scree/detect/ground_height.hpp"
 
-#include <algorithm>
 #include <cmath>
+
+#include "scree/detect/quantile.hpp"
 
 namespace scree {
 
@@ -27,9 +28,7 @@ float GroundHeight::around(const OrientedBox& box, const PlaneCells& cells,
                          }
                        });
     if (heights_.size() < kEnough) continue;
-    float* middle = heights_.begin() + heights_.size() / 2;
-    std::nth_element(heights_.begin(), middle, heights_.end());
-    return *middle;
+    return quantile({heights_.data(), heights_.size()}, 0.5);
   }
   return otherwise;
 }

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "scree/detect/neighbours.hpp"
+#include "scree/detect/quantile.hpp"
 #include "scree/detect/supervoxels.hpp"
 
 namespace scree {
@@ -18,7 +19,7 @@ constexpr std::size_t kBorder = 2;  // empty cells all around, so that every cel
 GroundSurface::GroundSurface(std::size_t max_points, std::size_t max_cells)
     : begin_(max_cells + 2),
       z_(max_points),
-      median_(max_cells),
+      seen_(max_cells),
       smooth_(max_cells),
       ground_(max_cells),
       patch_(max_cells),
@@ -41,9 +42,9 @@ void GroundSurface::build(PointView points, const GroundSurfaceSettings& setting
 
 void GroundSurface::build_below(std::span<const std::uint8_t> loose,
                                 const GroundSurfaceSettings& settings) {
-  constexpr float kLow = 0.05F;  // noise lies lower still
-  for (std::size_t cell = 0; cell < median_.size(); ++cell) {
-    if (loose[cell] != 0) median_[cell] = quantile(cell, kLow);
+  constexpr double kLow = 0.05;  // noise lies lower still
+  for (std::size_t cell = 0; cell < seen_.size(); ++cell) {
+    if (loose[cell] != 0) seen_[cell] = height_in(cell, kLow);
   }
   find_ground(settings);
 }
@@ -53,12 +54,12 @@ void GroundSurface::find_ground(const GroundSurfaceSettings& settings) {
   find_patches(settings.max_slope);
   const bool has_trend = settings.trend_reach > 0;
   if (has_trend) {
-    trend_.fit(columns_, rows_, ground_.data(), median_.data(), cell_, settings.trend_reach);
-    add_trend(-1, {&median_});
+    trend_.fit(columns_, rows_, ground_.data(), seen_.data(), cell_, settings.trend_reach);
+    add_trend(-1, {&seen_});
     join_trend(settings.tolerance);
   }
   join_patches(settings.tolerance);
-  if (has_trend) add_trend(1, {&median_, &smooth_});
+  if (has_trend) add_trend(1, {&seen_, &smooth_});
 }
 
 void GroundSurface::lay_out(PointView points, float cell_size) {
@@ -75,7 +76,7 @@ void GroundSurface::lay_out(PointView points, float cell_size) {
   for (cell_ = cell_size;; cell_ *= 2) {
     columns_ = cells(low_x_, high_x);
     rows_ = cells(low_y_, high_y);
-    if (columns_ * rows_ <= median_.capacity()) break;
+    if (columns_ * rows_ <= seen_.capacity()) break;
   }
   inverse_ = 1 / cell_;
   low_x_ -= static_cast<float>(kBorder) * cell_;
@@ -101,23 +102,18 @@ float GroundSurface::gather(PointView points) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     z_[begin_[cell_at(points.x[i], points.y[i]) + 1]++] = points.z[i];
   }
-  median_.resize(cells);
+  seen_.resize(cells);
   std::size_t occupied = 0;
   for (std::size_t cell = 0; cell < cells; ++cell) {
     if (points_in(cell) > 0) ++occupied;
-    median_[cell] = quantile(cell, 0.5F);
+    seen_[cell] = height_in(cell, 0.5);
   }
   return static_cast<float>(points.size()) / static_cast<float>(std::max<std::size_t>(occupied, 1));
 }
 
-float GroundSurface::quantile(std::size_t cell, float share) {
-  float* const first = z_.begin() + begin_[cell];
-  float* const last = z_.begin() + begin_[cell + 1];
-  if (first == last) return kUnseen;
-  float* const place =
-      first + static_cast<std::ptrdiff_t>(share * static_cast<float>(last - first));
-  std::nth_element(first, place, last);
-  return *place;
+float GroundSurface::height_in(std::size_t cell, double share) {
+  const std::span<float> heights(z_.begin() + begin_[cell], points_in(cell));
+  return heights.empty() ? kUnseen : quantile(heights, share);
 }
 
 float GroundSurface::blurred(std::size_t cell) const {
@@ -125,7 +121,7 @@ float GroundSurface::blurred(std::size_t cell) const {
   for (std::size_t v = 0; v < 3; ++v) {
     for (std::size_t u = 0; u < 3; ++u) {
       const std::size_t other = cell + v * columns_ + u - columns_ - 1;
-      const float z = median_[other];
+      const float z = seen_[other];
       if (ground_[other] == 0) continue;
       const float w = (u == 1 ? 2.0F : 1.0F) * (v == 1 ? 2.0F : 1.0F);
       weight += w;
@@ -141,7 +137,7 @@ void GroundSurface::find_smooth_cells(float max_slope) {
   for (std::size_t row = 1; row + 1 < rows_; ++row) {
     for (std::size_t column = 1; column + 1 < columns_; ++column) {
       const std::size_t cell = row * columns_ + column;
-      if (std::isnan(median_[cell])) continue;
+      if (std::isnan(seen_[cell])) continue;
       const float rise_x = rise(cell, 1, columns_), rise_y = rise(cell, columns_, 1);
       // False where a neighbour is not known.
       ground_[cell] = rise_x * rise_x + rise_y * rise_y <= limit * limit ? 1 : 0;
@@ -153,7 +149,7 @@ float GroundSurface::rise(std::size_t cell, std::size_t along, std::size_t acros
   float weight = 0, rise = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t middle = cell + k * across - across;
-    const float step = median_[middle + along] - median_[middle - along];
+    const float step = seen_[middle + along] - seen_[middle - along];
     if (std::isnan(step)) continue;
     const float w = k == 1 ? 2.0F : 1.0F;
     weight += w;
@@ -179,7 +175,7 @@ void GroundSurface::find_patches(float max_slope) {
         const std::size_t cell = around[i];
         if (ground_[cell] == 0 || patch_[cell] != kNoLabel) continue;
         const float way = i < kSides ? straight : diagonal;
-        if (std::abs(median_[cell] - median_[queue_[next]]) > way) continue;
+        if (std::abs(seen_[cell] - seen_[queue_[next]]) > way) continue;
         patch_[cell] = number;
         queue_.push_back(static_cast<std::uint32_t>(cell));
       }
@@ -203,7 +199,7 @@ void GroundSurface::add_trend(float sign,
 void GroundSurface::join_trend(float tolerance) {
   constexpr float kShare = 0.5F;  // the trend is not as near to the ground as the surface will be
   for (std::size_t cell = 0; cell < patch_.size(); ++cell) {
-    if (patch_[cell] != kNoLabel) patches_[patch_[cell]].residual += median_[cell];
+    if (patch_[cell] != kNoLabel) patches_[patch_[cell]].residual += seen_[cell];
   }
   for (Patch& patch : patches_) {
     const float cells = static_cast<float>(patch.cells);
@@ -230,7 +226,7 @@ void GroundSurface::join_patches(float tolerance) {
     for (Patch& patch : patches_) patch.residual = 0;
     for (std::size_t cell = 0; cell < cells; ++cell) {
       if (patch_[cell] == kNoLabel) continue;
-      patches_[patch_[cell]].residual += median_[cell] - smooth_[cell];
+      patches_[patch_[cell]].residual += seen_[cell] - smooth_[cell];
     }
     bool joined = false;
     for (Patch& patch : patches_) {

@@ -4,16 +4,10 @@
 #include <cmath>
 #include <utility>
 
+#include "scree/detect/quantile.hpp"
+
 namespace scree {
 namespace {
-
-/// Changes their order. @pre there are some, share below 1
-float quantile(FixedVector<float>& values, double share) {
-  float* const place =
-      values.begin() + static_cast<std::size_t>(share * static_cast<double>(values.size()));
-  std::nth_element(values.begin(), place, values.end());
-  return *place;
-}
 
 float half_height(const Features& features) {
   return std::max(features[max_height], -features[min_height]) / 2;
@@ -145,7 +139,7 @@ void Surroundings::measure(Cluster& cluster, std::span<const std::uint32_t> memb
   features[roughness] = uneven / std::max(level_cells, 1.0F);
   values_.clear();
   for (const std::uint32_t cell : cells_) values_.push_back(steepest_[cell]);
-  features[Feature::steepest] = quantile(values_, 0.9);
+  features[Feature::steepest] = quantile({values_.data(), values_.size()}, 0.9);
   measure_edge(features, surface);
   measure_solidity(features, solidity);
 }
@@ -165,7 +159,7 @@ void Surroundings::measure_edge(Features& features, const GroundSurface& surface
     if (height > half) ++high;
   }
   features[edge_share] = high / std::max(static_cast<float>(values_.size()), 1.0F);
-  features[edge_height] = values_.empty() ? 0 : quantile(values_, 0.5);
+  features[edge_height] = values_.empty() ? 0 : quantile({values_.data(), values_.size()}, 0.5);
 }
 
 void Surroundings::measure_solidity(Features& features, const Solidity& solidity) {
@@ -184,7 +178,7 @@ void Surroundings::measure_solidity(Features& features, const Solidity& solidity
   }
   features[solid_share] = solid / static_cast<float>(cells_.size());
   features[top_solidity] = Solidity::share(top_ended, top_passed);
-  features[core_solidity] = quantile(values_, 0.75);
+  features[core_solidity] = quantile({values_.data(), values_.size()}, 0.75);
   features[beam_count] = ended;
   features[range_scatter] = scatter / std::max(ended, 1.0F);
 }

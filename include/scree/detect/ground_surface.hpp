@@ -38,15 +38,14 @@ public:
   /// @param loose of each cell of the raster, 0 where it is not
   void build_below(std::span<const std::uint8_t> loose, const GroundSurfaceSettings& settings);
 
-  /// Of the last build; any place, also outside: there the nearest cell answers.
-  bool is_ground(float x, float y) const { return is_ground(cell_at(x, y)); }
-  /// z of the surface, bilinear, metres.
+  /// z of the surface of the last build, bilinear, metres. Any place: outside the nearest cell
+  /// answers.
   float height(float x, float y) const;
 
   // The raster, row by row, for those who walk over it.
   bool is_ground(std::size_t cell) const { return ground_[cell] != 0; }
-  /// Of a cell that is ground: distance of its points' median from the surface, metres.
-  float roughness(std::size_t cell) const { return std::abs(median_[cell] - smooth_[cell]); }
+  /// Of a cell that is ground: distance of its height from the surface, metres.
+  float roughness(std::size_t cell) const { return std::abs(seen_[cell] - smooth_[cell]); }
   std::size_t columns() const { return columns_; }
   std::size_t rows() const { return rows_; }
   float cell_size() const { return cell_; }
@@ -60,7 +59,7 @@ public:
 private:
   void lay_out(PointView points, float cell_size);
   /// The height below which this share of a cell's points lies; NaN without a point.
-  float quantile(std::size_t cell, float share);
+  float height_in(std::size_t cell, double share);
   /// Returns the mean number of points in the cells that have any.
   float gather(PointView points);
   /// From the heights of the cells.
@@ -78,7 +77,7 @@ private:
   std::size_t columns_ = 0, rows_ = 0;
   FixedVector<std::uint32_t> begin_;  // of each cell's points in z_, and one more
   FixedVector<float> z_;              // of the points, cell by cell
-  FixedVector<float> median_;         // of each cell, or its low points; NaN: without a point
+  FixedVector<float> seen_;           // height of each cell: build(), build_below(); NaN: no point
   FixedVector<float> smooth_;         // scratch: blurred heights, then the ground's
   FixedVector<std::uint8_t> ground_;
   FixedVector<std::uint32_t> patch_;  // of each cell
