@@ -6,31 +6,16 @@
 #include <random>
 
 #include "allocation_counter.hpp"
+#include "motion_steps.hpp"
 #include "scree/core/rotation.hpp"
 
 namespace scree {
 namespace {
 
+using test::ahead;
+using test::step_of;
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
-
-/// A step of `seconds` from one attitude to the next, straight along x of the robot.
-MotionStep step_of(const Eigen::Quaterniond& from, const Eigen::Quaterniond& to, double way,
-                   double seconds = 0.1) {
-  MotionStep step;
-  step.end_ns = std::llround(seconds * 1e9);
-  step.begin_attitude = from;
-  step.attitude = to;
-  step.moved = from.slerp(0.5, to) * Eigen::Vector3d(way, 0, 0);
-  step.distance = way;
-  step.knows_attitude = step.knows_distance = true;
-  return step;
-}
-
-MotionStep ahead(double way, double seconds = 0.1) {
-  const auto level = Eigen::Quaterniond::Identity();
-  return step_of(level, level, way, seconds);
-}
 
 /// Rows of H measure errors with independent deviations; `off` is what they read.
 struct Measurement {
@@ -222,48 +207,6 @@ TEST(PoseFilter, LearnsTheWheelsScaleAndTheDriftOfTheYaw) {
   EXPECT_NEAR(filter.yaw_drift(), -kDrift, 0.0003);
 }
 
-/// The i-th step of 0.1 s while the IMU's yaw turns at this rate.
-MotionStep yawing(double yaw_rate, int i, double way) {
-  return step_of(from_roll_pitch_yaw(0, 0, 0.1 * yaw_rate * i),
-                 from_roll_pitch_yaw(0, 0, 0.1 * yaw_rate * (i + 1)), way);
-}
-
-/// For 3 s on the spot, the IMU's yaw turning at this rate.
-PoseFilter on_the_spot(double yaw_rate, double way_a_step = 0, bool knows_distance = true) {
-  PoseFilter filter;
-  filter.predict(ahead(0));
-  for (int i = 0; i < 30; ++i) {
-    MotionStep step = yawing(yaw_rate, i, way_a_step);
-    step.knows_distance = knows_distance;
-    filter.predict(step);
-  }
-  return filter;
-}
-
-TEST(PoseFilter, StandingItKeepsItsYawAndLearnsTheDrift) {
-  for (const double rate : {0.002, -0.003}) {
-    PoseFilter filter = on_the_spot(rate);
-    EXPECT_LT(std::abs(yaw_of(filter.pose().rotation)), std::abs(rate) * 0.4) << rate;
-    EXPECT_NEAR(filter.yaw_drift(), -rate, 0.1 * std::abs(rate));
-    // Driving off, with the IMU drifting on.
-    for (int i = 30; i < 130; ++i) filter.predict(yawing(rate, i, 0.1));
-    EXPECT_LT(std::abs(yaw_of(filter.pose().rotation)), std::abs(rate) * 1.5) << rate;
-  }
-}
-
-TEST(PoseFilter, StandingItIsNoLessSureOfItsYaw) {
-  const PoseFilter standing = on_the_spot(0), creeping = on_the_spot(0, 0.003);
-  EXPECT_LT(standing.rotation_deviation().z(), 0.3 * creeping.rotation_deviation().z());
-  EXPECT_LT(standing.covariance()(7, 7), 0.1 * creeping.covariance()(7, 7));
-}
-
-TEST(PoseFilter, WhatTurnsOrRollsOrMayRollDoesNotStand) {
-  EXPECT_NEAR(yaw_of(on_the_spot(0.02).pose().rotation), 0.06, 1e-6) << "turns on the spot";
-  EXPECT_NEAR(yaw_of(on_the_spot(0.005, 0.003).pose().rotation), 0.015, 1e-6) << "creeps";
-  EXPECT_NEAR(yaw_of(on_the_spot(0.005, 0, false).pose().rotation), 0.015, 1e-6)
-      << "the wheel is silent";
-}
-
 TEST(PoseFilter, TheTiltThatWasLearntFadesWhereNothingKeepsIt) {
   PoseFilter filter;
   filter.predict(ahead(0));
@@ -312,78 +255,6 @@ TEST(PoseFilter, TheCovarianceStaysOneWhateverComes) {
     const Eigen::SelfAdjointEigenSolver<PoseFilter::Covariance> solver(covariance);
     ASSERT_GT(solver.eigenvalues().minCoeff(), -1e-10 * covariance.norm()) << i;
     ASSERT_NEAR(filter.pose().rotation.norm(), 1, 1e-9);
-  }
-}
-
-TEST(PoseFilter, SilenceMakesItUnsureOfJustWhatIsMissing) {
-  PoseFilter with, no_imu, no_wheel;
-  for (PoseFilter* filter : {&with, &no_imu, &no_wheel}) filter->predict(ahead(0));
-  for (int i = 0; i < 20; ++i) {
-    MotionStep step = ahead(0.1);
-    with.predict(step);
-    step.knows_attitude = false;
-    no_imu.predict(step);
-    step.knows_attitude = true;
-    step.knows_distance = false;
-    no_wheel.predict(step);
-  }
-  EXPECT_GT(no_imu.rotation_deviation().z(), 5 * with.rotation_deviation().z());
-  EXPECT_GT(no_imu.rotation_deviation().x(), 2 * with.rotation_deviation().x());
-  EXPECT_NEAR(no_imu.position_deviation().x(), with.position_deviation().x(), 0.01);
-  EXPECT_GT(no_wheel.position_deviation().x(), 2 * with.position_deviation().x());
-  EXPECT_NEAR(no_wheel.rotation_deviation().z(), with.rotation_deviation().z(), 1e-6);
-}
-
-/// Straight on for 2 s; then the IMU is silent and the robot believed to turn by `wrong` in all;
-/// then the IMU is back with `yaw`. Known before at all, or not.
-Pose silence(double wrong, double yaw, bool was_known, PoseFilter& filter) {
-  Eigen::Quaterniond attitude = Eigen::Quaterniond::Identity();
-  for (int i = 0; i < 40; ++i) {
-    const bool is_silent = i >= 20;
-    const Eigen::Quaterniond next =
-        is_silent ? attitude * exponential({0, 0, wrong / 20}) : attitude;
-    MotionStep step = step_of(attitude, next, 0.1);
-    step.knows_attitude = was_known && !is_silent;
-    filter.predict(step);
-    attitude = next;
-  }
-  const Pose before = filter.pose();
-  // Standing; dead reckoning gives the begin in the frame of the end.
-  const Eigen::Quaterniond heard = from_roll_pitch_yaw(0, 0, yaw);
-  filter.predict(step_of(heard, heard, 0));
-  return before;
-}
-
-TEST(PoseFilter, AnImuThatGoesOnAfterSilenceIsBelieved) {
-  PoseFilter filter;
-  const Pose before = silence(0.2, 0, true, filter);
-  EXPECT_NEAR(yaw_of(before.rotation), 0.2, 1e-6);
-  EXPECT_NEAR(yaw_of(filter.pose().rotation), 0, 1e-3);
-  EXPECT_EQ(filter.pose().translation, before.translation);
-  EXPECT_LT(filter.rotation_deviation().z(), 0.02);
-}
-
-TEST(PoseFilter, AnImuThatStartedOverKeepsTheYawThatWasBelieved) {
-  for (const double yaw : {2.0, -3.0, 1.0}) {
-    PoseFilter filter;
-    const Pose before = silence(0.2, yaw, true, filter);
-    EXPECT_NEAR(yaw_of(filter.pose().rotation), 0.2, 1e-3) << yaw;
-    EXPECT_EQ(filter.pose().translation, before.translation);
-    EXPECT_GT(filter.rotation_deviation().z(), 0.1) << "what was believed in silence is unsure";
-    filter.predict(step_of(from_roll_pitch_yaw(0, 0, yaw), from_roll_pitch_yaw(0, 0, yaw), 1));
-    const Eigen::Vector3d moved = filter.pose().translation - before.translation;
-    EXPECT_NEAR(std::atan2(moved.y(), moved.x()), 0.2, 1e-3) << yaw;
-  }
-}
-
-TEST(PoseFilter, AnImuHeardLateKeepsTheYawAndSetsTheTilt) {
-  for (const double yaw : {0.3, 2.0}) {
-    PoseFilter filter;
-    silence(0, yaw, false, filter);
-    EXPECT_NEAR(yaw_of(filter.pose().rotation), 0, 1e-3) << yaw;
-    const auto leaning = from_roll_pitch_yaw(0.1, 0.2, yaw);
-    filter.predict(step_of(leaning, leaning, 0));
-    EXPECT_LT(filter.pose().rotation.angularDistance(from_roll_pitch_yaw(0.1, 0.2, 0)), 1e-3);
   }
 }
 
