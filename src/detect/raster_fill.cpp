@@ -11,12 +11,32 @@ std::size_t pyramid_cells(std::size_t cells, std::size_t levels) {
   return 2 * cells + 4 * levels;
 }
 
+/// All cells of a row at once: that the one to the left has not been relaxed yet costs less than
+/// waiting for it.
+/// @param above, below at the raster's edge the row itself
+/// @param weights 1 of cells that stay, 0 of the others
+/// @param relaxed room for a row
+void relax_row(float* here, const float* above, const float* below, const float* weights,
+               float* relaxed, std::size_t columns) {
+  const auto mean = [=](std::size_t left, std::size_t i, std::size_t right) {
+    return 0.25F * ((here[left] + here[right]) + (above[i] + below[i]));
+  };
+  const std::size_t last = columns - 1;
+  relaxed[0] = mean(0, 0, std::min(last, std::size_t{1}));
+  for (std::size_t i = 1; i < last; ++i) relaxed[i] = mean(i - 1, i, i + 1);
+  if (last > 0) relaxed[last] = mean(last - 1, last, last);
+  for (std::size_t i = 0; i < columns; ++i) {
+    here[i] = weights[i] * here[i] + (1 - weights[i]) * relaxed[i];
+  }
+}
+
 }  // namespace
 
 RasterFill::RasterFill(std::size_t max_cells)
     : levels_(kMostLevels),
       heights_(2 * pyramid_cells(max_cells, kMostLevels)),
-      weights_(2 * pyramid_cells(max_cells, kMostLevels)) {}
+      weights_(2 * pyramid_cells(max_cells, kMostLevels)),
+      relaxed_(max_cells) {}
 
 void RasterFill::fill(std::size_t columns, std::size_t rows, const std::uint8_t* known,
                       float* heights) {
@@ -78,20 +98,14 @@ void RasterFill::push(const Level& coarse, const Level& fine) {
 
 void RasterFill::relax(const Level& level) {
   constexpr int kSteps = 12;
+  relaxed_.resize(level.columns);
   for (int step = 0; step < kSteps; ++step) {
     for (std::size_t row = 0; row < level.rows; ++row) {
-      float* const here = heights_.data() + level.at(0, row);
-      const float* const weights = weights_.data() + level.at(0, row);
-      const float* const up = row > 0 ? here - level.columns : here;
-      const float* const down = row + 1 < level.rows ? here + level.columns : here;
-      const std::size_t last = level.columns - 1;
-      for (std::size_t i = 0; i <= last; ++i) {
-        if (weights[i] > 0) continue;
-        // The left one comes last: it has just been written, and the sum of the others need not
-        // wait for it.
-        here[i] =
-            0.25F * (here[i > 0 ? i - 1 : i] + (here[i < last ? i + 1 : i] + (up[i] + down[i])));
-      }
+      const std::size_t first = level.at(0, row);
+      float* const here = heights_.data() + first;
+      relax_row(here, row > 0 ? here - level.columns : here,
+                row + 1 < level.rows ? here + level.columns : here, weights_.data() + first,
+                relaxed_.data(), level.columns);
     }
   }
 }

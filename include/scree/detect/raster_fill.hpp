@@ -37,6 +37,7 @@ private:
   static constexpr std::size_t kMostLevels = 24;
   FixedVector<Level> levels_;
   FixedVector<float> heights_, weights_;
+  FixedVector<float> relaxed_;  // a row
 };
 
 }  // namespace scree
