@@ -248,19 +248,28 @@ void RollingMap::forget(const Pose& pose) {
   const auto kept_ns = static_cast<std::int64_t>(settings_.keep_seconds * 1e9);
   constexpr std::uint32_t kJudged = 30;  // sweeps after which a point must have been confirmed
   for (std::size_t i = voxels_.size(); i-- > 0;) {
-    const Voxel& voxel = voxels_[i];
+    Voxel& voxel = voxels_[i];
     const bool is_far = (voxel.mean - here).squaredNorm() > reach * reach;
     const bool is_gone = voxel.passed >= kMostPassed;
     // From the future, too, when the clock was set back.
     const bool is_old = std::abs(end_ns_ - voxel.seen_ns) > kept_ns;
-    const bool is_noise = sweep_ - voxel.last_sweep == kJudged && !is_confirmed(voxel);
+    const bool is_noise = sweep_ - voxel.last_sweep == kJudged && !confirm(voxel);
     if (is_far || is_gone || is_old || is_noise) remove(i);
   }
 }
 
+/// What was found beside it need not be looked for again in each sweep.
+bool RollingMap::confirm(Voxel& voxel) const {
+  constexpr std::uint32_t kLasts = 5;  // sweeps
+  if (!voxel.is_confirmed || (sweep_ - voxel.last_sweep) % kLasts == 0) {
+    voxel.is_confirmed = has_confirmation(voxel);
+  }
+  return voxel.is_confirmed;
+}
+
 /// Seen by two sweeps in the voxel itself, or by three in it and next to it; what ended alone, by
 /// three in the voxel: grains of dust meet by chance.
-bool RollingMap::is_confirmed(const Voxel& voxel) const {
+bool RollingMap::has_confirmation(const Voxel& voxel) const {
   const auto is_enough = [](const Voxel& seen) { return seen.sweeps > (seen.is_grain() ? 2 : 1); };
   if (is_enough(voxel)) return true;
   if (voxel.is_grain()) return false;
@@ -303,9 +312,9 @@ void RollingMap::gather_cloud(const Eigen::Vector3f& here) {
   cloud_.clear();
   beams_.clear();
   const auto reach = static_cast<float>(settings_.search_reach);
-  for (const Voxel& voxel : voxels_) {
+  for (Voxel& voxel : voxels_) {
     const bool is_far = (voxel.mean - here).squaredNorm() > reach * reach;
-    if (is_far || is_dust(voxel) || !is_confirmed(voxel)) continue;
+    if (is_far || is_dust(voxel) || !confirm(voxel)) continue;
     cloud_.push_back(voxel.mean.x(), voxel.mean.y(), voxel.mean.z(), voxel.reflectivity);
     beams_.push_back(voxel.beams);
   }

@@ -68,6 +68,7 @@ private:
     std::uint32_t slot = 0;                          ///< in the index
     Eigen::Vector3f mean = Eigen::Vector3f::Zero();  ///< the map's frame - origin
     float reflectivity = 0;
+    bool is_confirmed = false;  ///< a few sweeps ago at most
     bool is_grain() const { return grains == hits; }
   };
 
@@ -91,7 +92,8 @@ private:
   void see_through(const DeskewedSweep& sweep, const Eigen::Matrix3f& rotation,
                    const Eigen::Vector3f& translation, float reach);
   void follow(const Eigen::Vector3f& from, const Eigen::Vector3f& beam, float reach);
-  bool is_confirmed(const Voxel& voxel) const;
+  bool confirm(Voxel& voxel) const;
+  bool has_confirmation(const Voxel& voxel) const;
   bool is_dust(const Voxel& voxel) const;
   void gather_cloud(const Eigen::Vector3f& here);
 
