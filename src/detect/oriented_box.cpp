@@ -7,13 +7,6 @@
 
 namespace scree {
 
-float OrientedBox::distance(float x, float y) const {
-  const float dx = x - center_x, dy = y - center_y;
-  const float along = std::abs(dx * std::cos(yaw) + dy * std::sin(yaw)) - length / 2;
-  const float across = std::abs(dy * std::cos(yaw) - dx * std::sin(yaw)) - width / 2;
-  return std::hypot(std::max(along, 0.0F), std::max(across, 0.0F));
-}
-
 OrientedBox smallest_box(PointView points, std::span<const std::uint32_t> indices) {
   constexpr float kPi = std::numbers::pi_v<float>;
   const float origin_x = points.x[indices[0]], origin_y = points.y[indices[0]];

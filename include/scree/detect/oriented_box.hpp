@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <span>
 
@@ -13,8 +15,17 @@ struct OrientedBox {
   float length = 0, width = 0;  ///< length >= width
   float yaw = 0;                ///< of the length, in (-pi/2, pi/2]
 
-  /// Distance of a position from the box in the plane; 0 inside.
-  float distance(float x, float y) const;
+  /// Gives the distance of a position (x, y) from the box in the plane; 0 inside. For many
+  /// positions: the box's direction is worked out once.
+  auto distances() const {
+    return [box = *this, c = std::cos(yaw), s = std::sin(yaw)](float x, float y) {
+      const float dx = x - box.center_x, dy = y - box.center_y;
+      const float along = std::abs(dx * c + dy * s) - box.length / 2;
+      const float across = std::abs(dy * c - dx * s) - box.width / 2;
+      if (along <= 0 || across <= 0) return std::max({along, across, 0.0F});
+      return std::hypot(along, across);
+    };
+  }
 };
 
 /// The smallest of the rectangles around the given points of a cloud, among 90 directions a degree

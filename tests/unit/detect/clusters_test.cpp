@@ -71,8 +71,8 @@ TEST(OrientedBox, IsFoundAtEveryAngle) {
     EXPECT_NEAR(std::cos(box.yaw - yaw), 1, 1e-4);
     EXPECT_GT(double{box.yaw}, -std::numbers::pi / 2);
     EXPECT_LE(double{box.yaw}, std::numbers::pi / 2);
-    EXPECT_NEAR(box.distance(7, -3), 0, 1e-6);
-    EXPECT_NEAR(box.distance(static_cast<float>(7 + 3 * std::cos(yaw)),
+    EXPECT_NEAR(box.distances()(7, -3), 0, 1e-6);
+    EXPECT_NEAR(box.distances()(static_cast<float>(7 + 3 * std::cos(yaw)),
                              static_cast<float>(-3 + 3 * std::sin(yaw))),
                 1, 1e-3);
   }
