@@ -73,7 +73,7 @@ TEST(OrientedBox, IsFoundAtEveryAngle) {
     EXPECT_LE(double{box.yaw}, std::numbers::pi / 2);
     EXPECT_NEAR(box.distances()(7, -3), 0, 1e-6);
     EXPECT_NEAR(box.distances()(static_cast<float>(7 + 3 * std::cos(yaw)),
-                             static_cast<float>(-3 + 3 * std::sin(yaw))),
+                                static_cast<float>(-3 + 3 * std::sin(yaw))),
                 1, 1e-3);
   }
 }
