@@ -13,7 +13,7 @@ float GroundHeight::around(const OrientedBox& box, const PlaneCells& cells,
                            std::span<const std::uint8_t> is_edge, float otherwise) {
   constexpr std::size_t kEnough = 8;
   const PointCloud& points = cells.points();
-  const auto distance_to_box = box.distances();
+  const auto distance_of = box.distances();
   float outer = outer_;
   for (int widening = 0; widening < 4; ++widening, outer *= 2) {
     heights_.clear();
@@ -22,7 +22,7 @@ float GroundHeight::around(const OrientedBox& box, const PlaneCells& cells,
                        box.center_y + reach, [&](Run run) {
                          for (std::uint32_t i = run.begin; i < run.end; ++i) {
                            if (is_edge[i] != 0) continue;
-                           const float distance = distance_to_box(points.x[i], points.y[i]);
+                           const float distance = distance_of(points.x[i], points.y[i]);
                            if (distance >= inner_ && distance <= outer) {
                              heights_.push_back(points.z[i]);
                            }

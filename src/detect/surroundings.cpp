@@ -102,10 +102,10 @@ void Surroundings::measure(Cluster& cluster, std::span<const std::uint32_t> memb
   const OrientedBox& box = cluster.box;
   const float reach = std::hypot(box.length, box.width) / 2 + kFurtherAround,
               step = surface.cell_size();
-  const auto distance_to_box = box.distances();
+  const auto distance_of = box.distances();
   for (float y = box.center_y - reach; y <= box.center_y + reach; y += step) {
     for (float x = box.center_x - reach; x <= box.center_x + reach; x += step) {
-      const float distance = distance_to_box(x, y);
+      const float distance = distance_of(x, y);
       if (distance > kFurtherAround) continue;
       const std::size_t cell = surface.cell_at(x, y);
       if (distance > 0 && surface.is_ground(cell)) {

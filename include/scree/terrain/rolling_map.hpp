@@ -68,7 +68,7 @@ private:
     std::uint32_t slot = 0;                          ///< in the index
     Eigen::Vector3f mean = Eigen::Vector3f::Zero();  ///< the map's frame - origin
     float reflectivity = 0;
-    bool is_confirmed = false;  ///< a few sweeps ago at most
+    bool is_confirmed = false;  ///< when confirm() looked last
     bool is_grain() const { return grains == hits; }
   };
 
