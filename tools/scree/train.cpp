@@ -89,23 +89,26 @@ std::string table_of(const Scores& scores) {
 /// Everything that the weights depend on, and what they reach. No date: the same command gives the
 /// same file.
 std::string provenance(const TrainOptions& options, const DetectSettings& detect,
-                       const std::vector<Part>& parts, const TrainingResult& result,
+                       const std::vector<Part>& parts, const std::vector<TrainingResult>& results,
                        const Scores& scores) {
   const std::string profile = name_in(kProfiles, options.profile);
   std::string text = fmt::format(
       "Network for {}s, trained by Levenberg-Marquardt on simulated terrain.\n"
       "scree train --profile {}{} --seed {} --training {} --validation {} --held-out {} --hidden "
       "{} --inputs {} "
-      "--restarts {} --counts {}\n\n",
+      "--restarts {} --average {} --counts {}\n\n",
       profile, profile, options.config.empty() ? "" : " --config " + options.config, options.seed,
       options.training, options.validation, options.held_out, options.learn.hidden,
-      options.learn.inputs, options.learn.restarts, name_in(kForms, options.counts));
+      options.learn.inputs, options.learn.restarts, options.learn.averaged,
+      name_in(kForms, options.counts));
   for (const Part& part : parts) text += describe(part);
-  text += fmt::format("{} steps, best {}: {}; mean squared error {:.6f}, validation {:.6f}\n\n",
-                      result.curve.size() - 1, result.best, name_of(result.stop),
-                      result.curve[result.best].training_error,
-                      result.curve[result.best].validation_error);
-  text += "Samples of the held-out part:\n" + table_of(scores);
+  for (const TrainingResult& result : results) {
+    text += fmt::format("{} steps, best {}: {}; mean squared error {:.6f}, validation {:.6f}\n",
+                        result.curve.size() - 1, result.best, name_of(result.stop),
+                        result.curve[result.best].training_error,
+                        result.curve[result.best].validation_error);
+  }
+  text += "\nSamples of the held-out part:\n" + table_of(scores);
   text += "\nThe detector's settings:\n";
   const std::string table = options.profile == Profile::track ? "map" : profile;
   for_each_detect_key("detect." + table, detect, [&](const Key& key, const auto& value) {
@@ -149,6 +152,14 @@ void run(TrainOptions options) {
   if (options.out.empty()) {
     options.out = "config/" + (is_track ? settings.track.network : detect.network);
   }
+  if (options.learn.averaged > options.learn.restarts) {
+    throw Failure(fmt::format("--average {} takes more networks than --restarts {} trains",
+                              options.learn.averaged, options.learn.restarts));
+  }
+  if (options.learn.averaged * options.learn.hidden > Network::kMaxHidden) {
+    throw Failure(fmt::format("--average {} times --hidden {} is more than {} units",
+                              options.learn.averaged, options.learn.hidden, Network::kMaxHidden));
+  }
   options.learn.seed = options.seed;
   set_inputs(options);
   Network clusters;
@@ -170,8 +181,8 @@ void run(TrainOptions options) {
                                  is_track ? settings.track.appear : detect.min_confidence);
   fmt::print("\nsamples of the held-out part:\n{}", table_of(scores));
 
-  const auto saved =
-      trained.network.save(options.out, provenance(options, detect, parts, trained.result, scores));
+  const auto saved = trained.network.save(
+      options.out, provenance(options, detect, parts, trained.results, scores));
   if (!saved) throw Failure(saved.error().message);
   fmt::print("\nwrote {}\n", options.out);
 }
@@ -209,6 +220,11 @@ void add_train(CLI::App& app) {
       ->check(CLI::Range(std::size_t{1}, std::size_t{kFeatures}))
       ->capture_default_str();
   command->add_option("--restarts", options->learn.restarts, "starts from other weights")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command
+      ->add_option("--average", options->learn.averaged,
+                   "the best of the restarts whose mean is the network")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   command
