@@ -295,10 +295,10 @@ bool RollingMap::has_confirmation(const Voxel& voxel) const {
 /// as a blade's tip does. What many ended at is none, whatever went past it.
 bool RollingMap::is_dust(const Voxel& voxel) const {
   constexpr std::uint16_t kMany = 8;
-  constexpr float kThin = 0.05F, kSolid = 0.1F;  // share of the beams that end in a coarse cell
+  constexpr float kSolid = 0.1F;  // share of the beams that end in a coarse cell
   if (voxel.hits >= kMany) return false;
   const Eigen::Vector3f place = voxel.mean + origin_.cast<float>();
-  if (free_space_.ended_share(place) >= kThin) return false;
+  if (free_space_.ended_share(place) >= kSolid) return false;
   for (const float side : {-FreeSpace::kCell, FreeSpace::kCell}) {
     for (int axis = 0; axis < 3; ++axis) {
       const float share = free_space_.ended_share(place + side * Eigen::Vector3f::Unit(axis));

@@ -1,3 +1,4 @@
+#include "scree/core/random.hpp"
 #include "terrain/rolling_map_fixture.hpp"
 
 namespace scree {
@@ -89,6 +90,26 @@ TEST_F(RollingMapConfirmation, DustWhereNearlyAllBeamsGoThroughStaysOut) {
     end_sweep();
   }
   EXPECT_TRUE(has_near(dust)) << "eight have seen it there: it is none";
+}
+
+TEST_F(RollingMapConfirmation, APuffThatStopsOneBeamInFourteenStaysOut) {
+  const Eigen::Vector3d lidar(0, 0, 1), right(0, 0.02, 0), up(0, 0, 0.02), puff(4.03, 0.13, 1.38);
+  Random random(3);
+  for (int sweep = 0; sweep < 20; ++sweep) {
+    for (int column = -5; column <= 5; ++column) {
+      for (int row = -5; row <= 5; ++row) {
+        const Eigen::Vector3d place = puff + column * right + row * up;
+        if (random.index(14) == 0) {
+          see(place + Eigen::Vector3d(random.uniform(0, 0.2), 0, 0));
+        } else {
+          see_nothing(place - lidar);
+        }
+      }
+    }
+    end_sweep();
+  }
+  EXPECT_GT(map_.voxels(), 20U) << "there is something to keep out";
+  EXPECT_EQ(map_.cloud().size(), 0U);
 }
 
 TEST_F(RollingMapConfirmation, PointsOfOneSweepDoNotConfirmOneAnother) {
