@@ -108,7 +108,8 @@ public:
     constexpr int kEvery = 5;  // sweeps
     constexpr double kLeastPiece = 0.25;
     const Drive drive(training_drive(seed));
-    const Settings settings = with_sensors_of(drive.robot, settings_);
+    Settings settings = with_sensors_of(drive.robot, settings_);
+    settings.map.registration = seed % 8 != 5;
     Pipeline pipeline(settings, Detector(settings.detect_map, Network()),
                       Detector(settings.detect_sweep, Network()));
     DriveFeed feed(drive);

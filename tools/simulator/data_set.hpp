@@ -28,9 +28,10 @@ CloudSettings varied_cloud(std::uint64_t seed);
 
 /// Clusters that the detector finds in terrains of these seeds, with their truth. Clouds are
 /// varied_cloud()s of varied_terrain()s; maps are those of the pipeline after every half second of
-/// drives through all scenes, with robots as the simulator draws them; sweeps are one turn at 5, 10
-/// or 20 Hz of the lidar that `settings` describes, and only obstacles that it shows well enough
-/// (see Visibility) are asked for. Tracks are those after every third sweep of such drives.
+/// drives through all scenes, with robots as the simulator draws them, one drive in eight without
+/// registration: maps that poses have smeared are to be learnt too. Sweeps are one turn at 5, 10 or
+/// 20 Hz of the lidar that `settings` describes, and only obstacles that it shows well enough (see
+/// Visibility) are asked for. Tracks are those after every third sweep of drives, all registered.
 /// @param progress called after each seed with the number done
 /// @param clusters for tracks: what judges the clusters that they follow
 LabelledClusters make_data_set(Profile profile, const Settings& settings, SeedRange seeds,
