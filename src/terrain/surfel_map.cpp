@@ -7,8 +7,12 @@
 namespace scree {
 namespace {
 
-constexpr float kLeastPoints = 8;
-// A cell that has seen this many points lets the old ones fade.
+constexpr float kLeastPoints = 30;
+/// A plane of this many points stands: a map that takes in all that is laid onto it moves with the
+/// pose, and drifts. One point in kOneIn still counts, lest what has changed be kept for ever ...
+constexpr float kStanding = 100;
+constexpr int kOneIn = 16;
+// ... for a cell that has seen this many points lets the old ones fade.
 constexpr float kMostPoints = 300;
 /// A plane's narrower direction spreads at least this much: a single ring is a line.
 constexpr float kLeastWidth = 0.12F;  // of the cell's edge
@@ -38,6 +42,7 @@ void SurfelMap::add(const Eigen::Vector3f& point) {
     cell.place = place;
     cell.is_used = true;
   }
+  if (cell.is_plane && cell.points >= kStanding && ++cell.left_out % kOneIn != 0) return;
   if (cell.points > kMostPoints) {
     constexpr float kFade = 0.5F;
     cell.points *= kFade;

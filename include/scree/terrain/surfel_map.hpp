@@ -20,7 +20,8 @@ struct Surfel {
 
 /// The ground around the robot as planes in cubic cells, for registration. Bounded: cells lie in an
 /// EndlessBox, and a cell is taken over by the place that was seen last. So what the robot leaves
-/// behind is forgotten. Points are floats in the map's frame: good to 1 mm as far as 8 km from its
+/// behind is forgotten. Planes of many points hardly move any more: sweeps are laid onto the ground
+/// as it was first seen. Points are floats in the map's frame: good to 1 mm as far as 8 km from its
 /// origin, to 1 cm as far as 80 km.
 class SurfelMap {
 public:
@@ -43,6 +44,7 @@ private:
     bool is_used = false;
     bool is_fresh = false;  // the surfel is that of the sums
     bool is_plane = false;
+    std::uint8_t left_out = 0;  // points, of a standing plane; wraps
     float points = 0;
     Eigen::Vector3f sum = Eigen::Vector3f::Zero();  // from the cell's middle
     float xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;

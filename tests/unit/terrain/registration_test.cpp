@@ -20,8 +20,8 @@ protected:
   PoseFilter filter_;
 
   void learn(const test::RoughGround& ground) {
-    for (double x = -9; x < 9; x += 0.06) {
-      for (double y = -9; y < 9; y += 0.06) {
+    for (double x = -9; x < 9; x += 0.05) {
+      for (double y = -9; y < 9; y += 0.05) {
         map_.add(Eigen::Vector3d(x, y, ground.height(x, y)).cast<float>());
       }
     }
@@ -141,8 +141,8 @@ TEST_F(RegistrationTest, KeyPointsAreChosenByTheirNormals) {
   const auto ridge = [](double x, double y) {
     return std::abs(y) < 1 ? std::max(0.6 - 0.5 * std::abs(x - 3), 0.0) : 0.0;
   };
-  for (double x = -6; x < 6; x += 0.06) {
-    for (double y = -6; y < 6; y += 0.06) {
+  for (double x = -6; x < 6; x += 0.05) {
+    for (double y = -6; y < 6; y += 0.05) {
       map_.add(Eigen::Vector3d(x, y, ridge(x, y)).cast<float>());
     }
   }
@@ -165,8 +165,8 @@ TEST_F(RegistrationTest, KeyPointsAreChosenByTheirNormals) {
 TEST_F(RegistrationTest, WorksManyKilometresFromTheOrigin) {
   const test::RoughGround rough;
   constexpr double kFar = 12'000.3;
-  for (double x = -9; x < 9; x += 0.06) {
-    for (double y = -9; y < 9; y += 0.06) {
+  for (double x = -9; x < 9; x += 0.05) {
+    for (double y = -9; y < 9; y += 0.05) {
       map_.add(Eigen::Vector3d(kFar + x, y, rough.height(x, y)).cast<float>());
     }
   }
@@ -188,8 +188,8 @@ TEST_F(RegistrationTest, WorksManyKilometresFromTheOrigin) {
 /// A ditch along x binds y and yaw, and still says nothing of x.
 TEST_F(RegistrationTest, ADitchLeavesTheDirectionAlongIt) {
   const auto ditch = [](double y) { return 0.25 * std::sin(1.5 * y); };
-  for (double x = -9; x < 9; x += 0.06) {
-    for (double y = -9; y < 9; y += 0.06) map_.add(Eigen::Vector3d(x, y, ditch(y)).cast<float>());
+  for (double x = -9; x < 9; x += 0.05) {
+    for (double y = -9; y < 9; y += 0.05) map_.add(Eigen::Vector3d(x, y, ditch(y)).cast<float>());
   }
   be_unsure();
   const Eigen::Vector3d before = filter_.position_deviation();

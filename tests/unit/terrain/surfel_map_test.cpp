@@ -36,7 +36,7 @@ TEST(SurfelMap, IsTheEigenDecompositionOfItsPoints) {
     const Eigen::Vector3d corner(0.3 * (i * 7 - 100), 0.3 * (50 - 3 * i), 0.3 * (i % 5 - 2));
     const Eigen::Vector3d normal =
         Eigen::Vector3d(0.02 * (i % 30), -0.015 * (i % 20), 1).normalized();
-    const auto cloud = patch(corner, normal, 20 + 5 * i, 0.002 * (i % 6), random);
+    const auto cloud = patch(corner, normal, 30 + 5 * i, 0.002 * (i % 6), random);
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     for (const auto& point : cloud) {
       map.add(point);
@@ -113,13 +113,36 @@ TEST(SurfelMap, ForgetsAPlaceWhoseCellIsTakenOver) {
   EXPECT_EQ(map.at(here), nullptr);
 }
 
+// Sweeps that are laid 2 cm off, one after the other, do not take the map along.
+TEST(SurfelMap, KeepsAPlaneOfManyPoints) {
+  std::mt19937 random(15);
+  SurfelMap map(kCell);
+  const auto cloud = patch({0, 0, 0}, {0, 0, 1}, 200, 0.001, random);
+  for (const auto& point : cloud) map.add(point);
+  const Eigen::Vector3f before = map.at(cloud.front())->center;
+  for (const auto& point : cloud) map.add(point + Eigen::Vector3f(0, 0, 0.02F));
+  const Surfel* const after = map.at(cloud.front());
+  EXPECT_NEAR(after->center.z(), before.z(), 0.0015);
+  EXPECT_GT(after->center.z(), before.z());
+  EXPECT_LT(after->points, 220);
+
+  // What has not become a plane has nothing to keep.
+  const auto beside = patch({3, 0, 0}, {0, 0, 1}, 400, 0.001, random);
+  for (const auto& point : beside) map.add({point.x(), 0.15F, point.z()});
+  ASSERT_EQ(map.at(beside.front()), nullptr);
+  for (const auto& point : beside) map.add(point);
+  EXPECT_NE(map.at(beside.front()), nullptr);
+}
+
 TEST(SurfelMap, FollowsGroundThatChanges) {
   std::mt19937 random(15);
   SurfelMap map(kCell);
   const auto cloud = patch({0, 0, 0}, {0, 0, 1}, 2000, 0.001, random);
   for (const auto& point : cloud) map.add(point);
   const float before = map.at(cloud.front())->center.z();
-  for (const auto& point : cloud) map.add(point + Eigen::Vector3f(0, 0, 0.02F));
+  for (int i = 0; i < 16; ++i) {
+    for (const auto& point : cloud) map.add(point + Eigen::Vector3f(0, 0, 0.02F));
+  }
   EXPECT_NEAR(map.at(cloud.front())->center.z(), before + 0.02F, 1e-3);
 }
 
