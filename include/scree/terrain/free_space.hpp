@@ -20,7 +20,7 @@ public:
 
   void clear() { cells_.assign(cells_.capacity(), {}); }
   /// @param beams that went through
-  void pass(const Eigen::Vector3f& place, std::uint32_t sweep, std::uint16_t beams = 1);
+  void pass(const Eigen::Vector3f& place, std::uint32_t sweep, std::uint16_t beams);
   /// One that ended there.
   void end(const Eigen::Vector3f& place);
   /// The sweep that passed it last; 0 for none.

@@ -31,7 +31,7 @@ TEST(FreeSpace, RemembersWhatWasPassedLast) {
     };
     for (std::uint32_t sweep = 1; sweep <= 20'000; ++sweep) {
       const Eigen::Vector3f place = somewhere();
-      space.pass(place, sweep);
+      space.pass(place, sweep, 1);
       reference[cell_of(place)] = sweep;
     }
     for (int i = 0; i < 20'000; ++i) {
@@ -48,9 +48,9 @@ TEST(FreeSpace, RemembersWhatWasPassedLast) {
 TEST(FreeSpace, APlaceTakesOverTheMemoryOfOneFarAway) {
   FreeSpace space;
   const Eigen::Vector3f here(1, 1, 0.1F), far_away = here + Eigen::Vector3f(32, 0, 0);
-  space.pass(here, 5);
+  space.pass(here, 5, 1);
   EXPECT_EQ(space.last_passed(far_away), 0U);
-  space.pass(far_away, 6);
+  space.pass(far_away, 6, 1);
   EXPECT_EQ(space.last_passed(far_away), 6U);
   EXPECT_EQ(space.last_passed(here), 0U);
 }
@@ -78,7 +78,7 @@ TEST(FreeSpace, ASmallShareIsKeptOverMillionsOfBeams) {
     if (i % 20 == 0) {
       space.end(place);
     } else {
-      space.pass(place, 1);
+      space.pass(place, 1, 1);
     }
     if (i > 1000) {
       ASSERT_NEAR(space.ended_share(place), 0.05, 0.002);
