@@ -12,7 +12,6 @@ namespace {
 constexpr int kWidth = 1280, kHeight = 760;
 constexpr Rectangle kPlot{110, 100, 840, 560};
 constexpr double kLegend = 980;  // left end
-constexpr Colour kWhite{1, 1, 1}, kText{0.13, 0.13, 0.16}, kFaint{0.45, 0.45, 0.5};
 constexpr Colour kGrid{0.88, 0.89, 0.91};
 
 /// Where a value stands between the ends of an axis, 0..1 inside.

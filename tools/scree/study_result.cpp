@@ -10,8 +10,7 @@
 namespace scree::cli {
 namespace {
 
-constexpr Colour kBlue{0.05, 0.25, 0.85}, kRed{0.85, 0.08, 0.08}, kGreen{0.0, 0.55, 0.25};
-constexpr Colour kWrong{0.95, 0.55, 0.0};
+constexpr Colour kGreen{0.0, 0.55, 0.25}, kWrong{0.95, 0.55, 0.0};
 
 void draw(PanelPage& page, int column, const Detector& detector, const CloudWorld& world,
           const ObstacleList& list, const Comparison& comparison, const std::string& title) {

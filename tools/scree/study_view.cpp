@@ -10,8 +10,6 @@
 namespace scree::cli {
 namespace {
 
-constexpr Colour kWhite{1, 1, 1}, kText{0.13, 0.13, 0.16}, kFaint{0.45, 0.45, 0.5};
-constexpr Colour kGrid{0.3, 0.45, 0.6, 0.18};
 constexpr double kHead = 96, kFoot = 64;  // of the page, pixels
 
 /// Of full colour: the hue runs once round from 0 to 1.
@@ -45,8 +43,8 @@ GroundView::GroundView(Drawing& drawing, const Rectangle& area, double half_size
   const double step = half_size > 12 ? 5 : half_size > 5 ? 2 : 1;
   for (double at = -step * std::floor(half_size / step); at <= half_size; at += step) {
     const std::string text = fmt::format("{:g}", at);
-    drawing.line(plot_.x, down(at), plot_.x + plot_.width, down(at), kGrid, 1);
-    drawing.line(across(at), plot_.y, across(at), plot_.y + plot_.height, kGrid, 1);
+    drawing.line(plot_.x, down(at), plot_.x + plot_.width, down(at), kGridOnGround, 1);
+    drawing.line(across(at), plot_.y, across(at), plot_.y + plot_.height, kGridOnGround, 1);
     drawing.text(plot_.x - 6 - drawing.text_width(text, 11), down(at) + 4, text, 11, kFaint);
     drawing.text(across(at) - drawing.text_width(text, 11) / 2, plot_.y + plot_.height + 15, text,
                  11, kFaint);

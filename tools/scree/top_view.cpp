@@ -14,8 +14,6 @@ namespace {
 constexpr int kWidth = 1400, kHeight = 1120;
 constexpr Rectangle kPlot{70, 90, 1000, 980};
 constexpr double kPanel = 1105;  // left end of the legend
-constexpr Colour kWhite{1, 1, 1}, kText{0.13, 0.13, 0.16}, kFaint{0.45, 0.45, 0.5};
-constexpr Colour kGrid{0.30, 0.45, 0.60, 0.20}, kBlue{0.05, 0.25, 0.85}, kRed{0.85, 0.08, 0.08};
 constexpr Colour kRobot{0.0, 0.5, 0.25};
 constexpr int kGreys = 48;
 
@@ -112,13 +110,13 @@ void draw_grid(Drawing& drawing, const View& view) {
   const auto first = [&](double low) { return static_cast<int>(std::ceil(low / step)); };
   for (int i = first(view.low_x()); i * step <= view.high_x(); ++i) {
     const double y = view.down(i * step);
-    drawing.line(kPlot.x, y, kPlot.x + kPlot.width, y, kGrid, i == 0 ? 2 : 1);
+    drawing.line(kPlot.x, y, kPlot.x + kPlot.width, y, kGridOnGround, i == 0 ? 2 : 1);
     const std::string label = fmt::format("{:.{}f}", i * step, decimals);
     drawing.text(kPlot.x - 8 - drawing.text_width(label, 14), y + 5, label, 14, kFaint);
   }
   for (int i = first(view.low_y()); i * step <= view.high_y(); ++i) {
     const double x = view.across(i * step);
-    drawing.line(x, kPlot.y, x, kPlot.y + kPlot.height, kGrid, i == 0 ? 2 : 1);
+    drawing.line(x, kPlot.y, x, kPlot.y + kPlot.height, kGridOnGround, i == 0 ? 2 : 1);
     const std::string label = fmt::format("{:.{}f}", i * step, decimals);
     drawing.text(x - drawing.text_width(label, 14) / 2, kPlot.y + kPlot.height + 20, label, 14,
                  kFaint);
