@@ -4,6 +4,7 @@ import json
 import math
 import os
 import random
+import re
 import struct
 import subprocess
 import sys
@@ -232,6 +233,38 @@ class DetectTest(unittest.TestCase):
         said = self.scree("detect", capture, "--out", self.path("l")).stderr
         self.assertRegex(said, r"map: \d+ points found no room: raise map.max_voxels")
         self.assertRegex(said, r"map: \d+ sweeps during which the wheel slipped")
+
+    def draw(self, source, lists):
+        """What `scree picture` says, and the points that it drew."""
+        said = self.scree("picture", source, lists, "--out", self.path("p.png")).stdout
+        with open(self.path("p.png"), "rb") as picture:
+            self.assertEqual(picture.read(8), b"\x89PNG\r\n\x1a\n")
+        return said, int(re.search(r"(\d+) points", said)[1])
+
+    def test_pictures_show_what_the_detector_had(self):
+        capture, lidar, lists = self.path("drive"), self.path("lidar"), self.path("lists.jsonl")
+        self.scree("simulate", capture, "--seed", "9", "--scene", "rolling", "--seconds", "2")
+        drive = self.detect(capture)
+        said, points = self.draw(capture, lists)
+        self.assertIn("the ground as it was rebuilt until", said)
+        self.assertIn(f"{len(drive[-1]['obstacles'])} obstacles", said)
+
+        os.mkdir(lidar)
+        for name in ("lidar.pcap", "scree.toml"):
+            os.link(os.path.join(capture, name), os.path.join(lidar, name))
+        self.detect(lidar)
+        said, of_sweep = self.draw(lidar, lists)
+        self.assertIn("one sweep, ", said)
+        self.assertGreater(of_sweep, 5000)
+        self.assertGreater(points, 2 * of_sweep, "of 20 sweeps")
+
+        cloud = self.simulated_cloud()
+        self.detect(cloud)
+        self.assertIn("one point cloud, 900000 points", self.draw(cloud, lists)[0])
+        none = self.path("none.jsonl")
+        open(none, "w").close()
+        said = self.scree("picture", cloud, none, "--out", self.path("p.png"), code=1).stderr
+        self.assertIn("holds no obstacle list", said)
 
 
 if __name__ == "__main__":

@@ -6,14 +6,11 @@
 
 #include "commands.hpp"
 #include "lidar_capture.hpp"
-#include "motion_capture.hpp"
-#include "scree/app/pipeline.hpp"
+#include "pipeline_capture.hpp"
 #include "scree/capture/capture.hpp"
 #include "scree/capture/pcd.hpp"
-#include "scree/drivers/velodyne/lidar_stream.hpp"
 #include "scree/publish/jsonl.hpp"
 #include "stages.hpp"
-#include "waiting_sweeps.hpp"
 
 namespace scree::cli {
 namespace {
@@ -56,34 +53,11 @@ private:
   std::string line_;
 };
 
-void warn(std::string_view what, std::uint64_t count, std::string_view reason) {
-  if (count > 0) fmt::print(stderr, "scree: {}: {} {}\n", what, count, reason);
-}
-
 void warn_of_losses(const StageCounts& counts, std::string_view what) {
   warn(what, counts.dropped, "points beyond max_points were dropped");
   warn(what, counts.refused, "points are not finite or too far out, and were left out");
   warn(what, counts.edges_dropped, "edge points beyond max_edge_points were dropped");
   warn(what, counts.obstacles_dropped, "obstacles beyond max_obstacles were dropped");
-}
-
-/// Of the whole capture.
-void warn_of_losses(Pipeline& pipeline, const WaitingSweeps& sweeps) {
-  const Mapper& mapper = pipeline.mapper();
-  warn("map", mapper.map().dropped(), "points found no room: raise map.max_voxels");
-  warn("map", mapper.slips(), "sweeps during which the wheel slipped; it was not believed");
-  warn("tracks", pipeline.tracker().dropped(), "found no room: raise detect.map.max_obstacles");
-  warn("motion", pipeline.sensors().dropped(), "samples of IMU or encoder found no room");
-  warn("motion", pipeline.sensors().late(),
-       "samples of IMU or encoder were not newer than the one before, or no numbers");
-  warn("motion", sweeps.not_covered(),
-       "sweeps went on without the samples of IMU or encoder that cover them: those came later "
-       "than map.wait");
-}
-
-/// Empty without one.
-fs::path config_file(const DetectOptions& options) {
-  return settings_file(options.input, options.config).value_or(fs::path());
 }
 
 void detect_in_cloud(const DetectOptions& options) {
@@ -93,7 +67,8 @@ void detect_in_cloud(const DetectOptions& options) {
   // At the desk there is time: nothing of the file is left out.
   DetectSettings settings = all.detect_cloud;
   settings.max_points = std::max(settings.max_points, static_cast<int>(cloud->size()));
-  auto detector = make_detector(settings, config_file(options));
+  auto detector =
+      make_detector(settings, settings_file(options.input, options.config).value_or(fs::path()));
   if (!detector) throw Failure(detector.error().message);
 
   ListWriter writer(options.out);
@@ -108,39 +83,20 @@ void detect_in_cloud(const DetectOptions& options) {
 }
 
 void detect_in_capture(const DetectOptions& options) {
-  const Settings settings = capture_settings(options.input, options.config);
-  LidarCapture capture(options.input, settings);
-  auto pipeline = Pipeline::make(settings, config_file(options));
-  if (!pipeline) throw Failure(pipeline.error().message);
-  MotionCapture motion(options.input, options.config, settings, pipeline->sensors());
-
+  PipelineCapture capture(options.input, options.config);
+  Pipeline& pipeline = capture.pipeline();
   ListWriter writer(options.out);
   std::size_t sweeps = 0;
-  const auto process = [&](const Sweep& sweep) {
-    writer.write(pipeline->process(sweep));
+  capture.play([&](const Sweep& sweep) {
+    writer.write(pipeline.process(sweep));
     const std::string name = fmt::format("sweep_{:06}", sweeps++);
-    const StageCounts counts = pipeline->counts();
+    const StageCounts counts = pipeline.counts();
     warn_of_losses(counts, name);
     if (options.stages.empty()) return;
-    write_stages(pipeline->detector(), pipeline->ground(), options.stages / name);
+    write_stages(pipeline.detector(), pipeline.ground(), options.stages / name);
     fmt::print(writer.other_output(), "{}: {}\n", name, chain(counts));
-  };
-  WaitingSweeps waiting(settings.map.wait, *pipeline, process);
-  std::int64_t now_ns = 0;
-  velodyne::LidarStream stream(settings.lidar, [&](Sweep& sweep) {
-    if (!sweep.points.empty()) waiting.push(sweep, now_ns);
   });
-  capture.play(stream, {}, [&](std::int64_t arrival_ns) {
-    now_ns = arrival_ns;
-    motion.play_until(arrival_ns);
-    waiting.process_ready(arrival_ns);
-  });
-  motion.finish();
-  waiting.process_all();
   writer.finish();
-  report_capture(capture, stream);
-  motion.report();
-  warn_of_losses(*pipeline, waiting);
 }
 
 }  // namespace

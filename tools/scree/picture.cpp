@@ -9,11 +9,8 @@
 #include "commands.hpp"
 #include "detections.hpp"
 #include "health_words.hpp"
-#include "lidar_capture.hpp"
-#include "scree/app/pipeline.hpp"
-#include "scree/capture/capture.hpp"
+#include "pipeline_capture.hpp"
 #include "scree/capture/pcd.hpp"
-#include "scree/drivers/velodyne/lidar_stream.hpp"
 #include "top_view.hpp"
 
 namespace scree::cli {
@@ -23,47 +20,48 @@ struct PictureOptions {
   std::string input, detections, out, config;
 };
 
+/// What the obstacles lie on.
 struct Ground {
   PointCloud points;          // `base` frame
   std::string what;           // for the subtitle
   std::int64_t stamp_ns = 0;  // of the sweep
 };
 
-/// The last whole sweep of a capture. The very last may be a part of a turn: the fuller of the last
-/// two is whole.
-class SweepChoice {
-public:
-  void take(Sweep& sweep) {
-    std::swap(last_, before_last_);
-    std::swap(last_, sweep);
+PointCloud moved(const PointCloud& cloud, const Pose& pose) {
+  const Eigen::Affine3f motion =
+      (Eigen::Translation3d(pose.translation) * pose.rotation).cast<float>();
+  PointCloud result(cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Eigen::Vector3f place = motion * Eigen::Vector3f(cloud.x[i], cloud.y[i], cloud.z[i]);
+    result.push_back(place.x(), place.y(), place.z(), cloud.reflectivity[i]);
   }
-  const Sweep& chosen() const {
-    return last_.points.size() >= before_last_.points.size() ? last_ : before_last_;
-  }
+  return result;
+}
 
-private:
-  Sweep last_{velodyne::kSweepCapacity}, before_last_{velodyne::kSweepCapacity};
-};
-
-/// A sweep of the capture as the detector gets it.
+/// What the detector had at the end of the capture: the map, or, of a lidar alone, the last sweep.
 Ground ground_of_capture(const PictureOptions& options) {
-  const Settings settings = capture_settings(options.input, options.config);
-  const auto config = settings_file(options.input, options.config);
-  auto pipeline = Pipeline::make(settings, config.value_or(""));
-  if (!pipeline) throw Failure(pipeline.error().message);
-  SweepChoice choice;
-  velodyne::LidarStream stream(settings.lidar, [&](Sweep& sweep) { choice.take(sweep); });
-  LidarCapture capture(options.input, settings);
-  capture.play(stream);
-  report_capture(capture, stream);
-  pipeline->process(choice.chosen());
-  const PointCloud& ground = pipeline->ground();
-  Ground copy{PointCloud(ground.size()),
-              "one sweep, " + time_of_day(choice.chosen().end_ns) + " UTC", choice.chosen().end_ns};
-  for (std::size_t i = 0; i < ground.size(); ++i) {
-    copy.points.push_back(ground.x[i], ground.y[i], ground.z[i], ground.reflectivity[i]);
+  PipelineCapture capture(options.input, options.config);
+  Pipeline& pipeline = capture.pipeline();
+  Ground ground;
+  bool is_whole = false;
+  capture.play([&](const Sweep& sweep) {
+    pipeline.process(sweep);
+    // The last sweep may be a part of a turn: of no use by itself.
+    if (!pipeline.uses_map() && is_whole && !sweep.is_whole) return;
+    is_whole = sweep.is_whole;
+    ground.stamp_ns = sweep.end_ns;
+    if (!pipeline.uses_map()) ground.points = moved(pipeline.ground(), {});
+  });
+  const std::string time = time_of_day(ground.stamp_ns) + " UTC";
+  ground.what = "one sweep, " + time;
+  if (pipeline.uses_map()) {
+    const Mapper& mapper = pipeline.mapper();
+    const Eigen::Quaterniond to_base = mapper.pose().rotation.conjugate();
+    ground.points = moved(pipeline.ground(),
+                          {to_base * (mapper.map().origin() - mapper.pose().translation), to_base});
+    ground.what = "the ground as it was rebuilt until " + time;
   }
-  return copy;
+  return ground;
 }
 
 Ground ground_of_cloud(const PictureOptions& options) {
@@ -99,9 +97,11 @@ void picture(const PictureOptions& options) {
   const Ground ground = is_cloud ? ground_of_cloud(options) : ground_of_capture(options);
   const std::string title =
       "Obstacles of " + std::filesystem::path(options.input).lexically_normal().filename().string();
-  Drawing drawing =
-      draw_top_view(ground.points, in_base(list_of(lists, ground.stamp_ns)), title, ground.what);
+  const ObstacleList& list = list_of(lists, ground.stamp_ns);
+  Drawing drawing = draw_top_view(ground.points, in_base(list), title, ground.what);
   drawing.write_png(options.out);
+  fmt::print("{}: {}, {} points, {} obstacles\n", options.out, ground.what, ground.points.size(),
+             list.obstacles.size());
 }
 
 }  // namespace
@@ -109,7 +109,7 @@ void picture(const PictureOptions& options) {
 void add_picture(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "picture",
-      "Draw the last whole sweep of a capture, or a cloud, with its obstacles from above");
+      "Draw the ground at the end of a capture, or a cloud, with its obstacles from above");
   auto options = std::make_shared<PictureOptions>();
   command->add_option("input", options->input, "capture or .pcd file")
       ->required()
@@ -118,9 +118,7 @@ void add_picture(CLI::App& app) {
       ->required()
       ->type_name("DETECTIONS.jsonl");
   command->add_option("--out", options->out, "picture to write")->required()->type_name("FILE.png");
-  command
-      ->add_option("--config", options->config,
-                   "configuration with the sensor's mount [scree.toml in the capture]")
+  command->add_option("--config", options->config, "configuration [scree.toml in the capture]")
       ->type_name("FILE");
   command->callback([options] { picture(*options); });
 }
