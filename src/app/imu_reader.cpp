@@ -48,11 +48,14 @@ void ImuReader::open() {
 void ImuReader::read() {
   while (const auto received = device_->advance(steady_ns())) {
     stream_.take(received->bytes, clock_.to_monotonic(received->arrival_ns, read_clocks()));
-    status_.last_bytes_ns = steady_ns();
-    if (stream_.counters().oriented != status_.imu.oriented) {
-      status_.last_message_ns = status_.last_bytes_ns;
-    }
-    status_.imu = stream_.counters();
+    const xsens::ImuCounters& counters = stream_.counters();
+    const std::int64_t now_ns = steady_ns();
+    // The answers to the start-up are no data that could be wrong.
+    const bool is_answer = counters.other_messages != status_.imu.other_messages &&
+                           counters.accepted == status_.imu.accepted;
+    if (!is_answer) status_.last_bytes_ns = now_ns;
+    if (counters.oriented != status_.imu.oriented) status_.last_message_ns = now_ns;
+    status_.imu = counters;
   }
   status_.clock = stream_.clock().status(wall_ns() - steady_ns());
   shared_status_.put(status_);

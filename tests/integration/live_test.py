@@ -8,7 +8,7 @@ import time
 from hung_thread import hung
 from live_daemon import LiveDaemonTest
 from live_sensors import Player, can_socket
-from programs import main
+from programs import PATIENCE, main
 
 LiveDaemonTest.screed, LiveDaemonTest.scree = sys.argv[1:3]
 
@@ -47,6 +47,17 @@ class LiveTest(LiveDaemonTest):
         self.say("imu ok", at)
         self.log.first(lambda line: "messages from the IMU" in line and "again after" in line)
         self.lists_go_on()
+
+    def test_answers_to_the_start_up_are_no_wrong_data(self):
+        capture = self.simulate()
+        self.start_daemon()
+        self.assertTrue(self.mti.measures.wait(PATIENCE))
+        for _ in range(2):  # health comes once a second
+            self.say("imu never seen", len(self.health.lines))
+        self.player = Player(capture, self.port, self.position_port, self.mti)
+        self.addCleanup(self.player.stop)
+        self.say("imu ok")
+        self.assertNotIn("imu wrong data", "".join(self.health.lines))
 
     def blind_is_said(self, cause, since, start):
         """And the stop line with it."""
