@@ -15,7 +15,7 @@ namespace {
 constexpr double kTiltSeconds = 20;    // the IMU's roll and pitch wander this fast
 constexpr double kYawWalk = 0.0005;    // rad in a square root of a second
 constexpr double kDrift = 0.001;       // of the yaw, rad/s
-constexpr double kDriftWalk = 0.0001;  // rad/s in a square root of a second
+constexpr double kDriftWalk = 0.001;   // rad/s in a square root of a second: heading filters wander
 constexpr double kScale = 0.015;       // of the wheel's circumference
 constexpr double kScaleWalk = 0.001;   // in a square root of a metre
 constexpr double kSlip = 0.02;         // along the way, metres in a square root of a metre ...
