@@ -7,10 +7,10 @@
 namespace scree {
 
 bool is_in_zone(const StopSettings& zone, const Pose& pose, const Obstacle& obstacle) {
-  const Eigen::Quaterniond to_base = pose.rotation.conjugate();
-  const Eigen::Vector3d center = to_base * (obstacle.center - pose.translation);
+  const Pose to_base = pose.inverse();
+  const Eigen::Vector3d center = to_base * obstacle.center;
   const Eigen::Vector3d length =
-      to_base * Eigen::Vector3d(std::cos(obstacle.yaw), std::sin(obstacle.yaw), 0);
+      to_base.rotation * Eigen::Vector3d(std::cos(obstacle.yaw), std::sin(obstacle.yaw), 0);
   const Eigen::Vector2d along = length.head<2>().normalized(), across(-along.y(), along.x());
   const Eigen::Vector2d zone_half(zone.length / 2, zone.width / 2);
   const Eigen::Vector2d between = center.head<2>() - Eigen::Vector2d(zone.length / 2, 0);

@@ -28,11 +28,6 @@ struct Shadow {
   double range() const { return center.norm(); }
 };
 
-Pose inverse(const Pose& pose) {
-  const Eigen::Quaterniond back = pose.rotation.conjugate();
-  return {-(back * pose.translation), back};
-}
-
 Outline corners_of(const Obstacle& box) {
   const Eigen::Vector2d along =
       Eigen::Vector2d(std::cos(box.yaw), std::sin(box.yaw)) * box.extent.x() / 2;
@@ -76,8 +71,8 @@ constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 }  // namespace
 
 Comparison compare(const Truth& truth, const Truth::Sight& sight, const ObstacleList& list) {
-  const Pose true_to_base = inverse(truth.pose_at(list.stamp_ns));
-  const Pose reported_to_base = inverse(list.pose);
+  const Pose true_to_base = truth.pose_at(list.stamp_ns).inverse();
+  const Pose reported_to_base = list.pose.inverse();
   std::vector<Shadow> obstacles, detections;
   for (const TrueObstacle& each : truth.obstacles) {
     obstacles.emplace_back(true_to_base, each.center, each.footprint);

@@ -1,7 +1,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <utility>
@@ -11,6 +10,7 @@
 #include "health_words.hpp"
 #include "pipeline_capture.hpp"
 #include "scree/capture/pcd.hpp"
+#include "scree/core/rotation.hpp"
 #include "top_view.hpp"
 
 namespace scree::cli {
@@ -45,22 +45,22 @@ Ground ground_of_capture(const PictureOptions& options) {
   Ground ground;
   bool is_whole = false;
   capture.play([&](const Sweep& sweep) {
-    pipeline.process(sweep);
     // The last sweep may be a part of a turn: of no use by itself.
-    if (!pipeline.uses_map() && is_whole && !sweep.is_whole) return;
+    if (is_whole && !sweep.is_whole && !pipeline.uses_map()) return;
     is_whole = sweep.is_whole;
+    pipeline.process(sweep);
     ground.stamp_ns = sweep.end_ns;
-    if (!pipeline.uses_map()) ground.points = moved(pipeline.ground(), {});
   });
-  const std::string time = time_of_day(ground.stamp_ns) + " UTC";
-  ground.what = "one sweep, " + time;
+  const Mapper& mapper = pipeline.mapper();
+  Pose ground_in_base;
+  ground.what = "one sweep, ";
   if (pipeline.uses_map()) {
-    const Mapper& mapper = pipeline.mapper();
-    const Eigen::Quaterniond to_base = mapper.pose().rotation.conjugate();
-    ground.points = moved(pipeline.ground(),
-                          {to_base * (mapper.map().origin() - mapper.pose().translation), to_base});
-    ground.what = "the ground as it was rebuilt until " + time;
+    const Pose map_in_odom{mapper.map().origin(), Eigen::Quaterniond::Identity()};
+    ground_in_base = mapper.pose().inverse() * map_in_odom;
+    ground.what = "the ground as it was rebuilt until ";
   }
+  ground.what += time_of_day(ground.stamp_ns) + " UTC";
+  ground.points = moved(pipeline.ground(), ground_in_base);
   return ground;
 }
 
@@ -72,12 +72,12 @@ Ground ground_of_cloud(const PictureOptions& options) {
 
 /// The obstacles of a list in `base`.
 FixedVector<Obstacle> in_base(const ObstacleList& list) {
-  const Eigen::Quaterniond to_base = list.pose.rotation.conjugate();
-  const Eigen::Vector3d ahead = list.pose.rotation * Eigen::Vector3d::UnitX();
+  const Pose to_base = list.pose.inverse();
+  const double yaw = yaw_of(list.pose.rotation);
   FixedVector<Obstacle> obstacles(list.obstacles.size());
   for (Obstacle obstacle : list.obstacles) {
-    obstacle.center = to_base * (obstacle.center - list.pose.translation);
-    obstacle.yaw -= std::atan2(ahead.y(), ahead.x());
+    obstacle.center = to_base * obstacle.center;
+    obstacle.yaw -= yaw;
     obstacles.push_back(obstacle);
   }
   return obstacles;

@@ -12,10 +12,10 @@ constexpr double kAhead = 0.75;  // of the rows, before the robot
 }  // namespace
 
 std::vector<Sighting> sightings(const ObstacleList& list) {
+  const Pose to_base = list.pose.inverse();
   std::vector<Sighting> all;
   for (const Obstacle& obstacle : list.obstacles) {
-    const Eigen::Vector3d place =
-        list.pose.rotation.conjugate() * (obstacle.center - list.pose.translation);
+    const Eigen::Vector3d place = to_base * obstacle.center;
     all.push_back({&obstacle, place.x(), place.y(), std::hypot(place.x(), place.y())});
   }
   std::ranges::stable_sort(all, {}, &Sighting::distance);

@@ -25,6 +25,11 @@ struct Pose {
   Pose operator*(const Pose& child) const {
     return {*this * child.translation, rotation * child.rotation};
   }
+  /// The parent's frame in the child.
+  Pose inverse() const {
+    const Eigen::Quaterniond back = rotation.conjugate();
+    return {-(back * translation), back};
+  }
 };
 
 /// Rz(yaw) Ry(pitch) Rx(roll), angles in radians.

@@ -22,6 +22,14 @@ TEST(Rotation, ExponentialIsThatOfTheCrossProductsMatrix) {
   }
 }
 
+TEST(Pose, InverseGoesBackFromBothSides) {
+  const Pose pose{{1, -2, 3}, from_roll_pitch_yaw(0.3, -0.5, 2)};
+  for (const Pose& there_and_back : {pose * pose.inverse(), pose.inverse() * pose}) {
+    EXPECT_LT(there_and_back.translation.norm(), 1e-12);
+    EXPECT_LT(logarithm(there_and_back.rotation).norm(), 1e-12);
+  }
+}
+
 TEST(Rotation, LogarithmUndoesExponentialBothWaysRoundTheSphere) {
   std::mt19937 random(2);
   std::normal_distribution<double> normal;
