@@ -108,6 +108,8 @@ void ImuStream::take_message(const Message& message, std::int64_t arrival_ns) {
   const std::uint64_t decoded = items_.decoded;
   const Measurement measurement = decode_mt_data2(message.data, items_);
   if (items_.decoded == decoded) return refuse(Refusal::empty);
+  // One in 256 garbled messages has a right checksum.
+  if (!is_plausible(to_sample(measurement, 0))) return refuse(Refusal::implausible);
   const Refusal refusal = judge(measurement, arrival_ns);
   if (refusal != Refusal::none) return refuse(refusal);
   last_arrival_ns_ = arrival_ns;

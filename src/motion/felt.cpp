@@ -13,7 +13,7 @@ std::optional<Eigen::Vector3d> felt_during(const SampleHistory<ImuSample>& imu,
   for (std::size_t i = std::max<std::size_t>(imu.count_until(begin_ns), 1); i < end; ++i) {
     const ImuSample& sample = imu[i];
     const std::int64_t since_ns = sample.t_ns - imu[i - 1].t_ns;
-    if (!sample.has_acceleration || !sample.acceleration.allFinite()) continue;
+    if (!sample.has_acceleration) continue;
     if (since_ns > SyncBuffer::kSilenceNs) continue;
     felt += sample.orientation * sample.acceleration * (static_cast<double>(since_ns) * 1e-9);
     known_ns += since_ns;

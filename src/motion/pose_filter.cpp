@@ -25,7 +25,8 @@ constexpr double kShake = 0.001;       // metres in each direction each step
 constexpr double kSilentTurn = 0.08;   // while the IMU is silent, rad in a square root of a second
 constexpr double kSilentTilt = 0.032;  // the same of roll and pitch
 constexpr double kSilentWay = 0.13;    // while the encoder is, metres in a square root of a second
-constexpr double kAnotherYaw = 0.5;    // rad: an IMU that comes back with this has restarted ...
+constexpr double kAnotherYaw = 0.04;   // rad: an IMU that comes back this far off, ...
+constexpr double kSurely = 3;          // ... and so many standard deviations, has restarted ...
 constexpr double kAnotherYawError = 0.05;  // ... and takes up the yaw this well, rad
 
 double square(double value) {
@@ -155,9 +156,10 @@ void PoseFilter::join(const MotionStep& step) {
   const Eigen::Quaterniond believed =
       pose_.rotation * step.begin_attitude.conjugate() * step.attitude;
   const double turned = yaw_between(believed, gone_on * step.attitude);
-  const bool goes_on = has_known_attitude_ && std::abs(turned) < kAnotherYaw;
-  const double yaw = goes_on ? yaw_before_ + square(kDrift * silent_s_)
-                             : covariance_(5, 5) + square(kAnotherYawError);
+  const double yaw_gone_on = yaw_before_ + square(kDrift * silent_s_);
+  const double off = std::max(kAnotherYaw, kSurely * std::sqrt(covariance_(5, 5) + yaw_gone_on));
+  const bool goes_on = has_known_attitude_ && std::abs(turned) < off;
+  const double yaw = goes_on ? yaw_gone_on : covariance_(5, 5) + square(kAnotherYawError);
   level_ = goes_on ? gone_on : exponential({0, 0, yaw_of(believed) - yaw_of(step.attitude)});
   covariance_.block<3, kErrors>(3, 0).setZero();
   covariance_.block<kErrors, 3>(0, 3).setZero();

@@ -1,5 +1,6 @@
 #include "scree/motion/slip_watch.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -32,7 +33,7 @@ void SlipWatch::advance(const SyncBuffer& sensors, std::int64_t begin_ns, std::i
     slips_ = is_known_ = false;
     return;
   }
-  speed_ += *faster;
+  speed_ = std::clamp(speed_ + *faster, -max_speed_, max_speed_);
   if (!wheel) {
     slips_ = false;
     return;

@@ -13,21 +13,17 @@ double seconds(std::int64_t ns) {
 
 bool is_sound(const ImuSample& sample) {
   constexpr double kUnit = 0.1;  // how far a quaternion's length may be from 1
-  return std::abs(sample.orientation.norm() - 1) < kUnit &&
-         (!sample.has_rate || sample.rate.allFinite());
+  return std::abs(sample.orientation.norm() - 1) < kUnit && is_plausible(sample);
 }
 
 bool is_sound(const EncoderSample& sample) {
   return std::isfinite(sample.distance);
 }
 
+/// Whether the clock was set back before this sample.
 template <class Sample>
-bool take(SampleHistory<Sample>& history, const Sample& sample) {
-  if (!is_sound(sample)) return false;
-  if (!history.empty() && sample.t_ns < history.newest().t_ns - SyncBuffer::kSetBackNs) {
-    history.clear();
-  }
-  return history.push(sample);
+bool is_set_back(const SampleHistory<Sample>& history, const Sample& sample) {
+  return !history.empty() && sample.t_ns < history.newest().t_ns - SyncBuffer::kSetBackNs;
 }
 
 /// Whether nothing follows the samples before `next`, or only after silence: then the answer must
@@ -64,19 +60,35 @@ bool SyncBuffer::put(const EncoderSample& sample) {
   return put(sample, wheel_ring_);
 }
 
+bool SyncBuffer::take(ImuSample sample) {
+  if (!is_sound(sample)) return false;
+  if (is_set_back(imu_, sample)) {
+    imu_.clear();
+    heading_.restart();
+  }
+  heading_.keep(sample);
+  return imu_.push(sample);
+}
+
+bool SyncBuffer::take(const EncoderSample& sample) {
+  if (!is_sound(sample)) return false;
+  if (is_set_back(wheel_, sample)) wheel_.clear();
+  return wheel_.push(sample);
+}
+
 /// Into the history; how many of them it refused.
 template <class Sample>
-std::uint64_t SyncBuffer::empty(Ring<Sample>& ring, SampleHistory<Sample>& history) {
+std::uint64_t SyncBuffer::empty(Ring<Sample>& ring) {
   std::uint64_t refused = 0;
   ring.samples.consume_all([&](const Sample& sample) {
     ring.depth.take();
-    refused += take(history, sample) ? 0 : 1;
+    refused += take(sample) ? 0 : 1;
   });
   return refused;
 }
 
 void SyncBuffer::gather() {
-  late_.fetch_add(empty(imu_ring_, imu_) + empty(wheel_ring_, wheel_), std::memory_order_relaxed);
+  late_.fetch_add(empty(imu_ring_) + empty(wheel_ring_), std::memory_order_relaxed);
 }
 
 bool SyncBuffer::covers(std::int64_t t_ns) const {

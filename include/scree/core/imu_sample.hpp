@@ -16,4 +16,12 @@ struct ImuSample {
   Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();  ///< specific force, m/s^2
 };
 
+/// Whether its numbers are finite, and its rate and acceleration below what any IMU of this class
+/// can measure (MTi-600 and 700 data sheets: 2000 deg/s and 10 g an axis; others 20 g).
+inline bool is_plausible(const ImuSample& sample) {
+  constexpr double kMostRate = 70, kMostAcceleration = 350;
+  return (!sample.has_rate || sample.rate.norm() < kMostRate) &&
+         (!sample.has_acceleration || sample.acceleration.norm() < kMostAcceleration);
+}
+
 }  // namespace scree

@@ -14,8 +14,9 @@ class SlipWatch {
 public:
   /// @param mount rotation imu -> base
   /// @param origin of the IMU in `base`, metres
-  SlipWatch(const Eigen::Quaterniond& mount, const Eigen::Vector3d& origin)
-      : mount_(mount), origin_(origin) {}
+  /// @param max_speed of the robot, m/s
+  SlipWatch(const Eigen::Quaterniond& mount, const Eigen::Vector3d& origin, double max_speed)
+      : mount_(mount), origin_(origin), max_speed_(max_speed) {}
 
   /// Over one interval after the other. Without acceleration, or after an interval too long to say
   /// anything, the wheel is believed.
@@ -32,6 +33,7 @@ private:
 
   Eigen::Quaterniond mount_;
   Eigen::Vector3d origin_;
+  double max_speed_;
   double speed_ = 0;
   double agreed_s_ = 0, slipped_s_ = 0;  // for so long
   bool is_known_ = false, slips_ = false;

@@ -73,7 +73,8 @@ TEST(PoseFilterKnowledge, SilenceMakesItUnsureOfJustWhatIsMissing) {
 
 /// Straight on for 2 s; then the IMU is silent and the robot believed to turn by `wrong` in all;
 /// then the IMU is back with `yaw`. Known before at all, or not.
-Pose silence(double wrong, double yaw, bool was_known, PoseFilter& filter) {
+/// @param seen standard deviation of the yaw that registration knows meanwhile, rad; 0 none
+Pose silence(double wrong, double yaw, bool was_known, PoseFilter& filter, double seen = 0) {
   Eigen::Quaterniond attitude = Eigen::Quaterniond::Identity();
   for (int i = 0; i < 40; ++i) {
     const bool is_silent = i >= 20;
@@ -83,6 +84,12 @@ Pose silence(double wrong, double yaw, bool was_known, PoseFilter& filter) {
     step.knows_attitude = was_known && !is_silent;
     filter.predict(step);
     attitude = next;
+    if (seen == 0) continue;
+    PoseEvidence evidence;
+    evidence.information(5, 5) = 1 / (seen * seen);
+    filter.begin_update();
+    filter.update(evidence);
+    filter.end_update(evidence);
   }
   const Pose before = filter.pose();
   // Standing; dead reckoning gives the begin in the frame of the end.
@@ -111,6 +118,17 @@ TEST(PoseFilterKnowledge, AnImuThatStartedOverKeepsTheYawThatWasBelieved) {
     const Eigen::Vector3d moved = filter.pose().translation - before.translation;
     EXPECT_NEAR(std::atan2(moved.y(), moved.x()), 0.2, 1e-3) << yaw;
   }
+}
+
+TEST(PoseFilterKnowledge, AnImuThatStartedOverALittleOffIsToldByWhatWasSeenMeanwhile) {
+  for (const double off : {0.17, -0.35, 0.1}) {
+    PoseFilter filter;
+    silence(0.2, 0.2 + off, true, filter, 0.01);
+    EXPECT_NEAR(yaw_of(filter.pose().rotation), 0.2, 0.01) << off;
+  }
+  PoseFilter filter;
+  silence(0.2, 0.18, true, filter, 0.01);
+  EXPECT_NEAR(yaw_of(filter.pose().rotation), 0.18, 0.002) << "it went on";
 }
 
 TEST(PoseFilterKnowledge, AnImuHeardLateKeepsTheYawAndSetsTheTilt) {

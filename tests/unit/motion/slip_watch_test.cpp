@@ -39,7 +39,7 @@ class SlipWatchTest : public testing::Test {
 protected:
   /// Drives for 10 s; the steps during which the wheel slips, by their number.
   std::vector<int> slips(const Slip& slip, const std::function<void(ImuSample&)>& fault = {}) {
-    SlipWatch watch(drive_.imu_mount, drive_.imu_translation);
+    SlipWatch watch(drive_.imu_mount, drive_.imu_translation, EncoderSettings().max_speed);
     const auto sensors = std::make_unique<SyncBuffer>();
     std::vector<int> steps;
     farthest_off_ = 0;
@@ -111,6 +111,12 @@ TEST_F(SlipWatchTest, KnowsTheSpeedWhileTheWheelIsSilent) {
   silent_until_ = 5;
   EXPECT_TRUE(slips(between(0, 0, 0)).empty());
   EXPECT_LT(farthest_off_, 0.1);
+}
+
+TEST_F(SlipWatchTest, KnowsNoSpeedBeyondTheRobots) {
+  silent_from_ = 2;
+  slips(between(0, 0, 0), [](ImuSample& imu) { imu.acceleration *= 30; });
+  EXPECT_LT(farthest_off_, EncoderSettings().max_speed + 2);
 }
 
 }  // namespace

@@ -84,6 +84,20 @@ TEST(ImuStream, WhatIsWrongInAMessageIsLeftOutOfItsSample) {
   EXPECT_EQ(listener.measured_ns.size(), 1U);
 }
 
+TEST(ImuStream, NoMessageIsBelievedWithNumbersThatNoImuMeasures) {
+  Listener listener;
+  Steady send(listener);
+  send({counter(0), tick(0), kTurn, kRate, kForce});
+  send({counter(999), tick(70000), kTurn, kRate, reals(0x4020, {0, 1e30, 0})});
+  send({counter(999), tick(70000), kTurn, reals(0x8020, {0, 0, -100}), kForce});
+  send({counter(999), tick(70000), reals(0x4042, {400, 0, 0})});
+  EXPECT_EQ(listener.samples.size(), 1U);
+  EXPECT_EQ(listener.refused(Refusal::implausible), 3U);
+  send({counter(4), tick(400), kTurn, reals(0x8020, {0, 34, 0}), reals(0x4020, {0, 98, 98})});
+  EXPECT_EQ(listener.samples.size(), 2U);
+  EXPECT_EQ(listener.stream.counters().lost, 3U);
+}
+
 TEST(ImuStream, OtherMessagesAreCountedAndNoSamples) {
   Listener listener;
   listener.stream.take(joined({test::message(0x3E, {}), test::message(0x42, {4}),

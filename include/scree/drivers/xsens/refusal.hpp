@@ -18,15 +18,17 @@ enum class Refusal : std::uint8_t {
   not_unit,    ///< item: a quaternion or matrix that is no rotation
   empty,       ///< message: MTData2 without any item that could be used
   duplicate,   ///< message: the packet counter or sample time of the message before it
-  late         ///< message: older than the message before it
+  late,        ///< message: older than the message before it
+  implausible  ///< message: its rate or acceleration is beyond any IMU, so its bytes are not its
+               ///< own
 };
-inline constexpr std::size_t kRefusals = 10;
+inline constexpr std::size_t kRefusals = 11;
 using RefusalCounts = std::array<std::uint64_t, kRefusals>;  ///< by Refusal; [none] stays 0
 
 /// For counters in tables and JSON.
 inline constexpr std::array<std::string_view, kRefusals> kRefusalNames = {
-    "none",       "checksum", "length", "truncated", "size",
-    "not_finite", "not_unit", "empty",  "duplicate", "late"};
+    "none",     "checksum", "length",    "truncated", "size",       "not_finite",
+    "not_unit", "empty",    "duplicate", "late",      "implausible"};
 
 /// For people.
 inline constexpr std::array<std::string_view, kRefusals> kRefusalReasons = {
@@ -39,6 +41,7 @@ inline constexpr std::array<std::string_view, kRefusals> kRefusalReasons = {
     "an orientation is no rotation",
     "no item that could be read",
     "duplicate",
-    "out of order"};
+    "out of order",
+    "a rate or an acceleration that no IMU measures"};
 
 }  // namespace scree::xsens
