@@ -21,7 +21,7 @@ struct Reading {
 /// cause. A counter moves by the smallest difference of two readings within its length; a speed by
 /// its mean over the time between them.
 ///
-/// Assumptions: a frame every 5 to 100 ms. A time stamp is off by up to 30 ms, because USB adapters
+/// Assumptions: a frame every 0.5 to 100 ms. A time stamp is off by up to 30 ms, because USB adapters
 /// hand frames on in bursts; so speeds are judged over more than one interval, and one step of the
 /// counter is never a speed by itself.
 ///
@@ -80,7 +80,7 @@ private:
     std::int64_t t_ns;
     double distance;
   };
-  std::array<Past, 64> past_{};
+  std::array<Past, 512> past_{};
   std::size_t past_size_ = 0;
 
   bool has_last_ = false, has_frame_ = false;
