@@ -13,6 +13,7 @@
 #include "scree/app/daemon.hpp"
 #include "scree/app/pipeline.hpp"
 #include "scree/drivers/gpio/lines.hpp"
+#include "scree/drivers/xsens/start_up.hpp"
 #include "service_manager.hpp"
 #include "supervisor.hpp"
 
@@ -59,16 +60,26 @@ scree::RobotLines robot_lines(scree::gpio::Lines& held) {
   return lines;
 }
 
+/// A configuration with which the daemon can start, as far as the files tell.
+scree::Result<scree::RunningConfig> read_config(const std::filesystem::path& file) {
+  auto config = scree::RunningConfig::read(file);
+  if (!config) return config;
+  if (const auto reason = scree::xsens::line_too_slow(config->settings().imu)) {
+    return scree::fail(file.string() + ": " + *reason);
+  }
+  return config;
+}
+
 /// Of the configuration and of all that it names; nothing is opened or started.
 int check(const std::filesystem::path& file) {
-  const auto config = scree::RunningConfig::read(file);
+  const auto config = read_config(file);
   if (!config) return failed(config.error().message);
   const auto networks = scree::load_networks(config->settings(), file);
   return networks ? kStopped : failed(networks.error().message);
 }
 
 int run(const std::filesystem::path& file) {
-  auto config = scree::RunningConfig::read(file);
+  auto config = read_config(file);
   if (!config) return failed(config.error().message);
   const scree::Settings& settings = config->settings();
   auto lines = scree::gpio::Lines::open(settings.gpio);  // stop is on from here

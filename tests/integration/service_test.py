@@ -110,6 +110,11 @@ class ServiceTest(ProgramTest):
         self.assertEqual((result.returncode, result.stdout, result.stderr), (0, "", ""))
         self.configure("[stop]\nlength = -1.0\n")
         self.assert_fails(self.run_to_end(*check), f"{self.config}:10: stop.length")
+        self.configure("")
+        with open(self.config) as file:
+            text = file.read()
+        self.write("robot.toml", text.replace("[imu]\n", "[imu]\nrate = 400\nbaud = 9600\n"))
+        self.assert_fails(self.run_to_end(*check), "more than imu.baud = 9600")
         self.configure('[detect.map]\nnetwork = "none.txt"\n')
         self.assert_fails(self.run_to_end(*check), "none.txt")
 
