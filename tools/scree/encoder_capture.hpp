@@ -28,10 +28,10 @@ public:
 
   /// Says on stderr what was refused, and why. Throws Failure when no signal was read.
   void report(const encoder::EncoderStream& stream) const;
-
-private:
+  /// One sentence on why no frame was accepted.
   std::string why_nothing(const encoder::EncoderStream& stream) const;
 
+private:
   std::string name_;
   CanLogReader log_;
   EncoderSettings settings_;

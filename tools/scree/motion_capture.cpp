@@ -14,15 +14,22 @@ void note(const std::string& text) {
   fmt::print(stderr, "scree: {}\n", text);
 }
 
+/// In one thread nothing has to wait in a ring, which a long part without lidar would overflow.
+template <class Sample>
+void put(SyncBuffer& sensors, const Sample& sample) {
+  sensors.put(sample);
+  sensors.gather();
+}
+
 }  // namespace
 
 MotionCapture::MotionCapture(const std::filesystem::path& capture,
                              const std::filesystem::path& config, const Settings& settings,
                              SyncBuffer& sensors)
     : encoder_settings_(encoder_settings(capture, config)),
-      imu_stream_(settings.imu, [&sensors](const ImuSample& sample) { sensors.put(sample); }),
+      imu_stream_(settings.imu, [&sensors](const ImuSample& sample) { put(sensors, sample); }),
       encoder_stream_(encoder_settings_,
-                      [&sensors](const EncoderSample& sample) { sensors.put(sample); }) {
+                      [&sensors](const EncoderSample& sample) { put(sensors, sample); }) {
   if (!std::filesystem::is_directory(capture)) return;
   if (imu_file(capture)) imu_.emplace(capture);
   if (can_file(capture)) encoder_.emplace(capture, encoder_settings_);
@@ -43,13 +50,18 @@ void MotionCapture::report() const {
     note("neither IMU nor encoder in the capture: each sweep was taken by itself");
     return;
   }
-  if (imu_stream_.counters().samples == 0) {
-    note("no sample of the IMU");
+  if (!imu_) {
+    note("no IMU in the capture");
+  } else if (imu_stream_.counters().accepted == 0) {
+    note(imu_->why_nothing(imu_stream_));
   } else {
     report_capture(*imu_, imu_stream_);
+    if (imu_stream_.counters().oriented == 0) note("the IMU sent no orientation: it is not used");
   }
-  if (encoder_stream_.counters().accepted == 0) {
-    note("no sample of the encoder");
+  if (!encoder_) {
+    note("no encoder in the capture");
+  } else if (encoder_stream_.counters().accepted == 0) {
+    note(encoder_->why_nothing(encoder_stream_));
   } else {
     encoder_->report(encoder_stream_);
   }

@@ -25,9 +25,11 @@ void warn_of_losses(Pipeline& pipeline, const WaitingSweeps& sweeps) {
   warn("map", mapper.map().dropped(), "points found no room: raise map.max_voxels");
   warn("map", mapper.slips(), "sweeps during which the wheel slipped; it was not believed");
   warn("tracks", pipeline.tracker().dropped(), "found no room: raise detect.map.max_obstacles");
+  warn("IMU", pipeline.sensors().heading().taken_out(),
+       "turns of its yaw that its angular rate did not know of; they were not believed");
   warn("motion", pipeline.sensors().dropped(), "samples of IMU or encoder found no room");
   warn("motion", pipeline.sensors().late(),
-       "samples of IMU or encoder were not newer than the one before, or no numbers");
+       "samples of IMU or encoder were not newer than the one before, or no plausible numbers");
   warn("motion", sweeps.not_covered(),
        "sweeps went on without the samples of IMU or encoder that cover them: those came later "
        "than map.wait");
@@ -57,8 +59,15 @@ void PipelineCapture::play(const std::function<void(const Sweep&)>& process) {
     motion_.play_until(arrival_ns);
     waiting.process_ready(arrival_ns);
   });
-  motion_.finish();
+  // Motion goes on until the last sweeps are covered, and no further: history is short.
+  constexpr std::int64_t kStepNs = 10'000'000;
+  const std::int64_t end_ns = now_ns + static_cast<std::int64_t>(settings_.map.wait * 1e9);
+  for (; waiting.has_any() && now_ns < end_ns; now_ns += kStepNs) {
+    motion_.play_until(now_ns);
+    waiting.process_ready(now_ns);
+  }
   waiting.process_all();
+  motion_.finish();
   report_capture(lidar_, stream);
   motion_.report();
   warn_of_losses(pipeline_, waiting);

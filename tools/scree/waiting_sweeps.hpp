@@ -24,6 +24,7 @@ public:
     waiting_.emplace_back(copy(sweep), arrival_ns + wait_ns_);
     process_ready(arrival_ns);
   }
+  bool has_any() const { return !waiting_.empty(); }
   /// Processes those that are covered, or have waited long enough.
   void process_ready(std::int64_t now_ns) {
     while (!waiting_.empty()) {
