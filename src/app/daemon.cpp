@@ -191,7 +191,8 @@ private:
     outputs_.set_zone(zone_.get());
     const LidarStatus& lidar = reader_.status();
     const DetectorStatus detector{last_round_ns_.load(std::memory_order_relaxed), last_list_ns_,
-                                  not_covered_.load(std::memory_order_relaxed)};
+                                  not_covered_.load(std::memory_order_relaxed),
+                                  work_.motion().slips, work_.motion().heading_resets};
     bool has_changed =
         watch_.update(now, lidar, imu_ ? imu_->status() : ImuStatus(),
                       encoder_ ? encoder_->status() : EncoderStatus(), detector, health_);

@@ -73,6 +73,12 @@ bool HealthWatch::update(std::int64_t now_ns, const LidarStatus& lidar, const Im
                           "sweeps went on without the samples of IMU or encoder that cover them: "
                           "those came later than map.wait",
                           log_);
+  slips_.say(now_ns, detector.slips, "sweeps during which the wheel slipped: it was not believed",
+             log_);
+  heading_resets_.say(now_ns, detector.heading_resets,
+                      "turns of the IMU's yaw that its angular rate did not know of: they were not "
+                      "believed",
+                      log_);
   return has_changed || health.reason != reason_before;
 }
 

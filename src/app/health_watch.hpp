@@ -17,6 +17,7 @@ struct DetectorStatus {
   std::int64_t last_round_ns = 0;  ///< its thread waited, or began or ended with a sweep
   std::int64_t last_list_ns = 0;   ///< LCM took a list, of a sweep not older than kOldSweep
   std::uint64_t not_covered = 0;   ///< sweeps that waited in vain for samples of IMU or encoder
+  std::uint64_t slips = 0, heading_resets = 0;  ///< see MotionReport
 };
 
 /// Judges from what the threads report whether the robot sees, and what a person should read in the
@@ -69,7 +70,7 @@ private:
   std::int64_t said_at_ns_ = 0;
   bool said_datagram_ = false, said_packet_ = false;
   bool said_pulse_ = false, said_pps_lost_ = false, said_no_pulse_ = false;
-  Growth sweeps_dropped_, sweeps_not_covered_;
+  Growth sweeps_dropped_, sweeps_not_covered_, slips_, heading_resets_;
 };
 
 }  // namespace scree

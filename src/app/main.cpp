@@ -27,6 +27,17 @@ int failed(const std::string& reason) {
   return kFailed;
 }
 
+scree::MotionReport motion_of(scree::Pipeline& pipeline) {
+  scree::MotionReport report;
+  report.slips = pipeline.mapper().slips();
+  report.heading_resets = pipeline.sensors().heading().taken_out();
+  if (!pipeline.uses_map()) return report;
+  const scree::PoseFilter& filter = pipeline.mapper().filter();
+  report.position_deviation = filter.position_deviation().head<2>().maxCoeff();
+  report.yaw_deviation = filter.rotation_deviation().z();
+  return report;
+}
+
 scree::Process process_of(scree::Pipeline& pipeline,
                           scree::Latest<scree::TrackingSettings>& tracking) {
   return [&pipeline, &tracking, all = scree::Dropped()](
@@ -40,7 +51,7 @@ scree::Process process_of(scree::Pipeline& pipeline,
     all.obstacles += counts.obstacles_dropped;
     all.map_points = pipeline.mapper().map().dropped();
     all.tracks = pipeline.tracker().dropped();
-    work = {all, pipeline.stage_times()};
+    work = {all, motion_of(pipeline), pipeline.stage_times()};
     return pipeline.has_looked() ? &list : nullptr;
   };
 }

@@ -20,6 +20,7 @@ void WorkWatch::see(std::int64_t latency_ns, std::int64_t detector_ns, const Wor
     if (work.stage_times[i] != kDidNotRun) stages_[i].record(work.stage_times[i]);
   }
   dropped_ = work.dropped;
+  motion_ = work.motion;
 }
 
 void WorkWatch::fill(health_t& health) const {
@@ -37,6 +38,10 @@ void WorkWatch::fill(health_t& health) const {
   health.obstacles_dropped = count(dropped_.obstacles);
   health.map_points_dropped = count(dropped_.map_points);
   health.tracks_dropped = count(dropped_.tracks);
+  health.sweeps_slipped = count(motion_.slips);
+  health.heading_resets = count(motion_.heading_resets);
+  health.position_deviation = motion_.position_deviation;
+  health.yaw_deviation = motion_.yaw_deviation;
 }
 
 queue_t queue_message(std::string name, const QueueFill& fill) {

@@ -24,11 +24,13 @@ public:
   void fill(health_t& health) const;
   /// What the detector has dropped up to now.
   const Dropped& dropped() const { return dropped_; }
+  const MotionReport& motion() const { return motion_; }
 
 private:
   LatencyHistogram latency_, detector_;
   std::array<LatencyHistogram, kStageNames.size()> stages_;
   Dropped dropped_;
+  MotionReport motion_;
 };
 
 queue_t queue_message(std::string name, const QueueFill& fill);

@@ -52,6 +52,8 @@ Counts drops_of(const health_t& health) {
   Counts counts = {{"sweeps dropped", health.sweeps_dropped},
                    {"sweeps without a return", health.sweeps_empty},
                    {"sweeps without all motion", health.sweeps_not_covered},
+                   {"sweeps with a slipping wheel", health.sweeps_slipped},
+                   {"resets of the heading", health.heading_resets},
                    {"lists failed", health.lists_failed},
                    {"lists dropped", health.lists_dropped},
                    {"points dropped", health.points_dropped},

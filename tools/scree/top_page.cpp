@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <span>
 
 #include "health_words.hpp"
+#include "scree/core/pose.hpp"
 
 namespace scree::cli {
 namespace {
@@ -76,6 +76,10 @@ void add_sensor(const char* name, const sensor_health_t& sensor, Area& area) {
            tone_of(sensor.state));
 }
 
+bool knows_pose(const health_t& health) {
+  return !std::isnan(health.position_deviation);
+}
+
 void add_sensors(const health_t& health, Area& area) {
   area.add(fmt::format("{:<8}{:<11}{:>5}/{:<5}{:>6}{:>8}  {:<14}{:>7}{:>11}  {}", "SENSOR", "state",
                        "rate", "due", "lost", "refused", "clock", "to ms", "offset s", "source"),
@@ -83,6 +87,9 @@ void add_sensors(const health_t& health, Area& area) {
   add_sensor("lidar", health.lidar, area);
   add_sensor("imu", health.imu, area);
   add_sensor("encoder", health.encoder, area);
+  if (!knows_pose(health)) return;
+  area.add(fmt::format("pose    off by {:.2f} m and {:.2f} deg (one standard deviation)",
+                       health.position_deviation, degrees(health.yaw_deviation)));
 }
 
 /// Latency and the detector's stages, the slowest first.
@@ -132,8 +139,8 @@ void add_losses(const health_t& health, Area& area) {
 }
 
 std::string bearing(const Sighting& sighting) {
-  const double degrees = std::atan2(sighting.left, sighting.ahead) * 180 / std::numbers::pi;
-  return fmt::format("{:.0f} {}", std::abs(degrees), degrees < 0 ? 'R' : 'L');
+  const double bearing = degrees(std::atan2(sighting.left, sighting.ahead));
+  return fmt::format("{:.0f} {}", std::abs(bearing), bearing < 0 ? 'R' : 'L');
 }
 
 void add_obstacles(const TopView& view, const std::vector<Sighting>& obstacles, Area& area) {
@@ -172,15 +179,16 @@ int work_rows(const health_t& health, int rows_left) {
 }  // namespace
 
 Page top_page(const TopView& view, int rows, int columns) {
-  constexpr int kHeader = 2, kSensors = 5;  // rows, with one that is empty
+  constexpr int kHeader = 2;  // rows
   Page page;
   Area header(page, 0, 0, std::min(rows, kHeader), columns);
   add_header(view, header);
   int row = kHeader;
-  if (view.health && rows > kHeader + kSensors) {
-    Area sensors(page, row, 0, kSensors - 1, columns);
+  const int sensor_rows = view.health && knows_pose(*view.health) ? 5 : 4;
+  if (view.health && rows > kHeader + sensor_rows + 1) {
+    Area sensors(page, row, 0, sensor_rows, columns);
     add_sensors(*view.health, sensors);
-    row += kSensors;
+    row += sensor_rows + 1;
     const int work = work_rows(*view.health, rows - row);
     if (work > 0) {
       Area times(page, row, 0, work, std::min(columns, kTimesWidth - 1));

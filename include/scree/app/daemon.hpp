@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -23,9 +24,20 @@ struct Dropped {
   std::uint64_t points_refused = 0;  ///< by the detector: no numbers, or too far off
 };
 
+/// How well the robot's motion is known, and what was not believed of it since the start.
+struct MotionReport {
+  /// Standard deviations of the pose: the larger one of x and y, metres, and the yaw's, rad. No
+  /// numbers where each sweep is taken by itself.
+  double position_deviation = std::numeric_limits<double>::quiet_NaN();
+  double yaw_deviation = std::numeric_limits<double>::quiet_NaN();
+  std::uint64_t slips = 0;           ///< sweeps during which the wheel slipped
+  std::uint64_t heading_resets = 0;  ///< see HeadingWatch
+};
+
 /// What the detector reports of its work on one sweep.
 struct Work {
   Dropped dropped;
+  MotionReport motion;
   StageTimes stage_times{};
 };
 

@@ -89,6 +89,7 @@ protected:
     rock.points = static_cast<std::uint32_t>(sweep.points.size());
     found_.obstacles.push_back(rock);
     work.dropped = {1, 2, 3, 4, 5, 6};
+    work.motion = {0.5, 0.25, 7, 8};
     work.stage_times.fill(kDidNotRun);
     work.stage_times[static_cast<std::size_t>(Stage::gradient)] = 7'000'000;
     return looks_ ? &found_ : nullptr;
@@ -139,6 +140,10 @@ TEST_F(DaemonTest, ListsAndHealthComeAndBlindnessIsSaid) {
     EXPECT_EQ(listener_->health.map_points_dropped, 4);
     EXPECT_EQ(listener_->health.tracks_dropped, 5);
     EXPECT_EQ(listener_->health.points_refused, 6);
+    EXPECT_EQ(listener_->health.position_deviation, 0.5);
+    EXPECT_EQ(listener_->health.yaw_deviation, 0.25);
+    EXPECT_EQ(listener_->health.sweeps_slipped, 7);
+    EXPECT_EQ(listener_->health.heading_resets, 8);
     ASSERT_EQ(listener_->health.stages_size, 1);
     EXPECT_EQ(listener_->health.stages[0].name, "gradient");
     EXPECT_EQ(listener_->health.stages[0].time.max_ms, 7);

@@ -196,6 +196,14 @@ TEST_F(HealthWatchTest, SweepsThatWaitedInVainAreSaid) {
   EXPECT_THAT(pass(20), HasSubstr("W sweeps went on without the samples of IMU or encoder"));
 }
 
+TEST_F(HealthWatchTest, MotionThatIsNotBelievedIsSaid) {
+  drive(50);
+  detector_.slips = 2;
+  EXPECT_THAT(pass(20), HasSubstr("W sweeps during which the wheel slipped"));
+  detector_.heading_resets = 1;
+  EXPECT_THAT(pass(20), HasSubstr("W turns of the IMU's yaw"));
+}
+
 TEST_F(HealthWatchTest, WithoutImuAndEncoderItSeesAndSaysThatTheyAreSilent) {
   drive(50);
   EXPECT_EQ(health_.imu.state, sensor_health_t::OK);

@@ -68,6 +68,8 @@ TopView driving() {
   health.threads = {{"detector", 17, 2}};
   health.processor_temperature = 48.25;
   health.sweeps_dropped = 8;
+  health.position_deviation = 0.125;
+  health.yaw_deviation = 0.25;
   ObstacleList& list = view.list.emplace(9);
   list.obstacles.push_back(obstacle(4, ObstacleKind::negative, 0, -6));
   list.obstacles.push_back(obstacle(7, ObstacleKind::positive, 3, 0));
@@ -86,6 +88,7 @@ TEST(TopPage, ShowsHealthAndObstacles) {
   EXPECT_THAT(text, HasSubstr("sweeps      1     3     3"));
   EXPECT_THAT(text, HasSubstr("detector        17      2"));
   EXPECT_THAT(text, HasSubstr("processor 48.2 C"));
+  EXPECT_THAT(text, HasSubstr("pose    off by 0.12 m and 14.32 deg"));
   EXPECT_THAT(text, AllOf(HasSubstr("3 lidar lost"), HasSubstr("7 lidar refused for flags"),
                           HasSubstr("8 sweeps dropped")));
   const auto rock = text.find("7     rock    3.00    0 L   1.25 x 0.50     0.42     0.93");
@@ -124,10 +127,12 @@ TEST(TopPage, SaysWhyItIsBlindAndThatAnEmptyListIsNothing) {
                           HasSubstr("nothing there")));
 }
 
-TEST(TopPage, ATemperatureThatIsNotThereIsLeftOut) {
+TEST(TopPage, WhatIsNotThereIsLeftOut) {
   TopView view = driving();
+  view.health->position_deviation = std::numeric_limits<double>::quiet_NaN();
   view.health->processor_temperature = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THAT(text_of(top_page(view, 30, 120), 30, 120), Not(HasSubstr("processor")));
+  EXPECT_THAT(text_of(top_page(view, 30, 120), 30, 120),
+              AllOf(Not(HasSubstr("processor")), Not(HasSubstr("pose"))));
 }
 
 TEST(TopPage, FitsEverySize) {
@@ -140,7 +145,7 @@ TEST(TopPage, FitsEverySize) {
     for (int columns = 1; columns < 160; columns += 3)
       text_of(top_page(view, rows, columns), rows, columns);
   }
-  EXPECT_THAT(text_of(top_page(view, 14, 80), 14, 80), HasSubstr("and 4 farther off"));
+  EXPECT_THAT(text_of(top_page(view, 14, 80), 14, 80), HasSubstr("and 5 farther off"));
 }
 
 }  // namespace
