@@ -43,7 +43,7 @@ std::pair<double, double> hull(double low_a, double high_a, double low_b, double
   return {(low + high) / 2, high - low};
 }
 
-void join(Obstacle& whole, const Obstacle& piece) {
+void join_to(Obstacle& whole, const Obstacle& piece) {
   const auto outline = corners(piece);
   Eigen::Vector2d low = in_box(whole, outline[0]), high = low;
   for (const Eigen::Vector3d& corner : outline) {
@@ -77,7 +77,7 @@ bool fill_a_box(const Obstacle& a, const Obstacle& b) {
     return (box.extent.x() + margin) * (box.extent.y() + margin);
   };
   Obstacle both = a;
-  join(both, b);
+  join_to(both, b);
   return area(both, 0) <= area(a, kMargin) + area(b, kMargin);
 }
 
@@ -112,23 +112,51 @@ double distance_to_box(const Obstacle& obstacle, const Eigen::Vector3d& place) {
   return (in_box(obstacle, place).cwiseAbs() - half).cwiseMax(0).norm();
 }
 
-void join_pieces(FixedVector<Obstacle>& obstacles) {
+Pieces::Pieces(std::size_t max_obstacles) : bonds_(max_obstacles), wholes_(max_obstacles) {}
+
+/// Whether two are one thing, by what is seen now or was lately.
+bool Pieces::renew(std::int64_t one, std::int64_t other, bool is_piece) {
+  constexpr int kStrongest = 4;  // lists more that speak for it than against it
+  const auto bond = std::ranges::find_if(bonds_, [&](const Bond& each) {
+    return each.one == std::min(one, other) && each.other == std::max(one, other);
+  });
+  if (bond == bonds_.end()) {
+    // Where there is no room the two are joined all the same, by what is seen.
+    if (is_piece) bonds_.push_back({std::min(one, other), std::max(one, other), 1, true});
+    return is_piece;
+  }
+  bond->is_asked = true;
+  bond->strength = std::clamp(bond->strength + (is_piece ? 1 : -1), 0, kStrongest);
+  return bond->strength > 0;
+}
+
+void Pieces::join(FixedVector<Obstacle>& obstacles) {
   std::sort(obstacles.begin(), obstacles.end(), [](const Obstacle& a, const Obstacle& b) {
     return a.points != b.points ? a.points > b.points : a.id < b.id;
   });
-  std::size_t kept = 0;
+  std::size_t lasting = 0;
+  for (Bond& bond : bonds_) {
+    if (!bond.is_asked) --bond.strength;  // one of the two is gone
+    bond.is_asked = false;
+    if (bond.strength > 0) bonds_[lasting++] = bond;
+  }
+  bonds_.resize(lasting);
+  wholes_.clear();
   for (const Obstacle& obstacle : obstacles) {
-    const auto wholes_end = obstacles.begin() + kept;
-    const auto whole = std::find_if(obstacles.begin(), wholes_end, [&](const Obstacle& other) {
-      return is_piece(other, obstacle);
-    });
-    if (whole != wholes_end) {
-      join(*whole, obstacle);
+    std::size_t i = 0;
+    while (i < wholes_.size() &&
+           !(obstacles[i].kind == obstacle.kind &&
+             renew(wholes_[i], obstacle.id, is_piece(obstacles[i], obstacle)))) {
+      ++i;
+    }
+    if (i < wholes_.size()) {
+      join_to(obstacles[i], obstacle);
     } else {
-      obstacles[kept++] = obstacle;
+      obstacles[i] = obstacle;
+      wholes_.push_back(obstacle.id);
     }
   }
-  obstacles.resize(kept);
+  obstacles.resize(wholes_.size());
 }
 
 void remove_shadows(FixedVector<Obstacle>& obstacles) {

@@ -25,7 +25,10 @@ Tracker::Tracker(const TrackingSettings& settings, std::size_t max_tracks,
       tracks_(max_tracks),
       pairs_(16 * max_tracks),
       track_of_(max_tracks),
-      published_(max_tracks) {}
+      published_(max_tracks),
+      pieces_(max_tracks),
+      shown_(max_tracks),
+      shown_before_(max_tracks) {}
 
 void Tracker::update(std::int64_t stamp_ns, const Eigen::Vector3d& robot,
                      std::span<const Obstacle> found,
@@ -75,7 +78,10 @@ void Tracker::update(std::int64_t stamp_ns, const Eigen::Vector3d& robot,
   obstacles.clear();
   for (Track& track : tracks_) {
     if (track.is_published) {
-      track.is_published = track.confidence >= static_cast<float>(settings_.disappear);
+      // Twice, unless its place was seen empty: one list that doubts it would make it flicker.
+      const bool is_doubted = track.confidence < static_cast<float>(settings_.disappear);
+      track.is_published = !is_doubted || (!track.is_doubted && !track.is_seen_empty);
+      track.is_doubted = is_doubted;
     } else {
       track.is_published = track.confidence >= static_cast<float>(settings_.appear) &&
                            track.found >= settings_.least_found;
@@ -88,10 +94,16 @@ void Tracker::update(std::int64_t stamp_ns, const Eigen::Vector3d& robot,
     published_.push_back(track.obstacle);
     published_.back().confidence = track.confidence;
   }
-  join_pieces(published_);
+  pieces_.join(published_);
   remove_shadows(published_);
+  constexpr double kStays = 0.3;  // metres beyond the reach, of what was in the list before
+  std::swap(shown_, shown_before_);
+  shown_.clear();
   for (const Obstacle& obstacle : published_) {
-    if (distance_to_box(obstacle, robot) > settings_.reach) continue;
+    const bool was_shown = std::ranges::find(shown_before_, obstacle.id) != shown_before_.end();
+    const double reach = settings_.reach + (was_shown ? kStays : 0);
+    if (distance_to_box(obstacle, robot) > reach) continue;
+    shown_.push_back(obstacle.id);
     if (!obstacles.push_back(obstacle)) ++dropped_;
   }
 }

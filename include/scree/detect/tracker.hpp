@@ -12,6 +12,7 @@
 #include "scree/core/obstacle.hpp"
 #include "scree/core/sight.hpp"
 #include "scree/detect/network.hpp"
+#include "scree/detect/pieces.hpp"
 
 namespace scree {
 
@@ -39,6 +40,7 @@ public:
     std::uint32_t found = 0;  ///< lists that had it
     std::int64_t found_ns = 0;
     bool is_published = false;
+    bool is_doubted = false;     ///< too little confidence in the last list
     bool is_matched = false;     ///< found in the last list
     bool is_seen_empty = false;  ///< its place, in the last list
 
@@ -87,6 +89,8 @@ private:
   FixedVector<Pair> pairs_;
   FixedVector<std::int32_t> track_of_;  // of each found one, -1 for none
   FixedVector<Obstacle> published_;
+  Pieces pieces_;
+  FixedVector<std::int64_t> shown_, shown_before_;  // ids in the list
   std::int64_t next_id_ = 1;
   std::uint64_t dropped_ = 0;
 };

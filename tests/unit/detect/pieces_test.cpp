@@ -27,7 +27,7 @@ Obstacle box(double x, double y, double length, double width, std::uint32_t poin
 FixedVector<Obstacle> joined(const std::vector<Obstacle>& obstacles) {
   FixedVector<Obstacle> list(64);
   for (const Obstacle& obstacle : obstacles) list.push_back(obstacle);
-  join_pieces(list);
+  Pieces(64).join(list);
   return list;
 }
 
@@ -41,6 +41,36 @@ std::vector<Eigen::Vector3d> outline(const Obstacle& obstacle) {
     }
   }
   return corners;
+}
+
+TEST(Pieces, WhatIsMostlyOneThingStaysOne) {
+  const Obstacle rock = box(5, 0, 1, 1, 100);
+  Obstacle sliver = box(5.75, 0, 0.1, 0.1, 10);
+  const Obstacle away = [&] {
+    Obstacle moved = sliver;
+    moved.center.x() = 6.5;
+    return moved;
+  }();
+  Pieces pieces(64);
+  const auto count = [&](const Obstacle& second) {
+    FixedVector<Obstacle> list(64);
+    list.push_back(rock);
+    list.push_back(second);
+    pieces.join(list);
+    return list.size();
+  };
+  EXPECT_EQ(count(away), 2U);
+  EXPECT_EQ(count(sliver), 1U);
+  EXPECT_EQ(count(away), 2U) << "one list says little";
+  for (const bool is_away : {false, false, true, false, true, false, false, true, true}) {
+    EXPECT_EQ(count(is_away ? away : sliver), 1U);
+  }
+  for (int i = 0; i < 4; ++i) count(away);
+  EXPECT_EQ(count(away), 2U);
+  // Never what is of another kind by now.
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(count(sliver), 1U);
+  sliver.kind = ObstacleKind::negative;
+  EXPECT_EQ(count(sliver), 2U);
 }
 
 TEST(DistanceToBox, IsMeasuredFromItsEdgesInThePlane) {

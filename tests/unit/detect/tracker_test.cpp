@@ -237,6 +237,10 @@ TEST_F(TrackerTest, AnObstacleTooFarOffIsFollowedAndPublishedAtOnceWhenTheRobotI
   EXPECT_NEAR(list_[0].center.x(), reach + 0.5, 1e-9);
   const std::int64_t id = list_[0].id;
   robot_ = {0, 0, 0};
+  EXPECT_EQ(update({at(reach + 0.5, 0)}).size(), 1U) << "it does not come and go at the reach";
+  robot_ = {-0.5, 0, 0};
+  EXPECT_EQ(update({at(reach + 0.5, 0)}).size(), 0U);
+  robot_ = {0, 0, 0};
   EXPECT_EQ(update({at(reach + 0.5, 0)}).size(), 0U);
   robot_ = {1, 0, 0};
   ASSERT_EQ(update({at(reach + 0.5, 0)}).size(), 1U);
@@ -249,7 +253,7 @@ TEST_F(TrackerTest, AnObstacleOfWhichAPartIsNearEnoughIsPublished) {
   ditch.extent = {2, 6, 0.4};
   ditch.yaw = 0;
   ASSERT_EQ(update({ditch}, 2).size(), 1U);
-  ditch.center.x() = reach + 1.1;
+  ditch.center.x() = reach + 1.4;
   EXPECT_EQ(update({ditch}).size(), 0U);
 }
 
