@@ -149,9 +149,9 @@ void for_each_key(AnySettings& settings, Visit&& visit) {
       "orientations, accelerations and rates a second: more follows fast motion better and needs a "
       "faster line");
   key("acceleration_hr_rate", imu.acceleration_hr_rate, "Hz", 0, 1000,
-      "accelerations a second besides, at high rate; 0 for none");
+      "accelerations a second besides, at high rate, for recordings; 0 for none");
   key("gyro_hr_rate", imu.gyro_hr_rate, "Hz", 0, 1000,
-      "rates of turn a second besides, at high rate; 0 for none");
+      "rates of turn a second besides, at high rate, for recordings; 0 for none");
   key("rpy_deg", imu.rpy_deg, "deg", -360, 360, "rotation imu -> base: roll, pitch, yaw");
   key("translation", imu.translation, "m", -100, 100, "imu origin in base: x, y, z");
 
