@@ -132,11 +132,12 @@ class RecordTest(ProgramTest):
     def test_missing_sensors_are_waited_for_and_said(self):
         self.mti.port = self.path("elsewhere")
         done = self.run_to_end(SCREE, "record", self.recording, "--config", self.config,
-                               "--seconds", "1.5")  # fmt: skip
+                               "--seconds", "3")  # fmt: skip
         said = done.stderr
         self.assertEqual(done.returncode, 1, said)
         self.assertIn("imu is not there: is the IMU plugged in?", said)
         self.assertIn("vcan0", said)
+        self.assertIn(f"no packets of the lidar on UDP port {self.port}", said)
         self.assertIn("nothing came from any sensor", said.splitlines()[-1])
 
     def test_a_port_in_use_and_a_folder_in_use_are_one_sentence(self):

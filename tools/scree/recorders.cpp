@@ -51,12 +51,19 @@ void LidarRecorder::add_descriptors(std::vector<pollfd>& wait_for) const {
   wait_for.push_back({position_.descriptor(), POLLIN, 0});
 }
 
-void LidarRecorder::work(std::int64_t) {
+void LidarRecorder::work(std::int64_t now_ns) {
+  constexpr std::int64_t kSilence = 2'000'000'000;
+  const std::uint64_t before = count();
   read(data_);
   read(position_);
   require(file_->flush());
+  if (count() > before || heard_ns_ == 0) heard_ns_ = now_ns;
   const std::uint64_t lost = data_.counts().kernel_drops + position_.counts().kernel_drops;
+  problem_.clear();
   if (lost > 0) problem_ = fmt::format("{} packets lost: this computer is too slow", lost);
+  if (now_ns - heard_ns_ > kSilence) {
+    problem_ = fmt::format("no packets of the lidar on UDP port {}", data_.port());
+  }
 }
 
 void LidarRecorder::read(UdpReceiver& port) {

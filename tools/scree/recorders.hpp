@@ -73,6 +73,7 @@ private:
   void read(UdpReceiver& port);
 
   UdpReceiver data_, position_;
+  std::int64_t heard_ns_ = 0;  // when packets came last, or it began
   std::optional<PcapWriter> file_;
   std::array<std::uint8_t, 65536> buffer_{};
 };
