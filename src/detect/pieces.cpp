@@ -159,17 +159,20 @@ void Pieces::join(FixedVector<Obstacle>& obstacles) {
   obstacles.resize(wholes_.size());
 }
 
-void remove_shadows(FixedVector<Obstacle>& obstacles) {
-  const auto is_shadow = [&](const Obstacle& hole) {
-    return hole.kind == ObstacleKind::negative &&
-           std::ranges::any_of(obstacles, [&](const Obstacle& rock) {
-             return rock.kind == ObstacleKind::positive && distance_to_box(rock, hole.center) <= 0;
-           });
+void keep_the_surer(FixedVector<Obstacle>& obstacles) {
+  const auto is_outdone = [&](const Obstacle& one) {
+    return std::ranges::any_of(obstacles, [&](const Obstacle& other) {
+      if (other.kind == one.kind) return false;
+      const bool is_hole = one.kind == ObstacleKind::negative;
+      const Obstacle &rock = is_hole ? other : one, &hole = is_hole ? one : other;
+      return distance_to_box(rock, hole.center) <= 0 &&
+             (is_hole ? hole.confidence <= rock.confidence : rock.confidence < hole.confidence);
+    });
   };
   std::size_t kept = 0;
-  // Swapped, not moved: no rock may be missing from the list while it is asked.
+  // Swapped, not moved: none may be missing from the list while it is asked.
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
-    if (!is_shadow(obstacles[i])) std::swap(obstacles[kept++], obstacles[i]);
+    if (!is_outdone(obstacles[i])) std::swap(obstacles[kept++], obstacles[i]);
   }
   obstacles.resize(kept);
 }

@@ -95,7 +95,7 @@ void Tracker::update(std::int64_t stamp_ns, const Eigen::Vector3d& robot,
     published_.back().confidence = track.confidence;
   }
   pieces_.join(published_);
-  remove_shadows(published_);
+  keep_the_surer(published_);
   constexpr double kStays = 0.3;  // metres beyond the reach, of what was in the list before
   std::swap(shown_, shown_before_);
   shown_.clear();

@@ -35,8 +35,8 @@ private:
   FixedVector<std::int64_t> wholes_;  // ids of those kept so far, as they came in
 };
 
-/// Takes out each hole whose middle lies in the box of a rock: it is what the rock hides. The order
-/// stays.
-void remove_shadows(FixedVector<Obstacle>& obstacles);
+/// Of a rock and a hole whose middle lies in the rock's box takes out the less sure one: the hole is
+/// what the rock hides, or the rock was the hole's far rim. The order stays.
+void keep_the_surer(FixedVector<Obstacle>& obstacles);
 
 }  // namespace scree
