@@ -77,11 +77,11 @@ void Tracker::update(std::int64_t stamp_ns, const Eigen::Vector3d& robot,
 
   obstacles.clear();
   for (Track& track : tracks_) {
+    const bool was_doubted = track.is_doubted;
+    track.is_doubted = track.confidence < static_cast<float>(settings_.disappear);
     if (track.is_published) {
       // Twice, unless its place was seen empty: one list that doubts it would make it flicker.
-      const bool is_doubted = track.confidence < static_cast<float>(settings_.disappear);
-      track.is_published = !is_doubted || (!track.is_doubted && !track.is_seen_empty);
-      track.is_doubted = is_doubted;
+      track.is_published = !track.is_doubted || (!was_doubted && !track.is_seen_empty);
     } else {
       track.is_published = track.confidence >= static_cast<float>(settings_.appear) &&
                            track.found >= settings_.least_found;

@@ -109,6 +109,22 @@ TEST_F(TrackerTest, TheMiddleOfAHoleIsEmptyAsLongAsItIsThere) {
 }
 
 // A confidence that wavers about a threshold does not make the obstacle come and go.
+TEST_F(TrackerTest, OneListOfDoubtWithdrawsNothing) {
+  sight_ = Sight::occupied;
+  ASSERT_EQ(update({at(3, 1)}, 20).size(), 1U);
+  const std::int64_t id = list_[0].id;
+  for (int i = 0; i < 2; ++i) {
+    int lists = 0;  // until it is doubted
+    do {
+      ASSERT_EQ(update({}).size(), 1U);
+      ASSERT_LT(++lists, 10);
+    } while (list_[0].confidence >= settings_.disappear);
+    ASSERT_EQ(update({at(3, 1)}, 20).size(), 1U);
+    EXPECT_EQ(list_[0].id, id);
+  }
+  EXPECT_LE(updates_until(0, {}), 5) << "but it goes";
+}
+
 TEST_F(TrackerTest, DoesNotFlicker) {
   std::mt19937 random(42);
   std::uniform_real_distribution<float> wavering(0.1F, 0.8F);
