@@ -25,9 +25,11 @@ void SlipWatch::advance(const SyncBuffer& sensors, std::int64_t begin_ns, std::i
   constexpr double kLongest = 0.5;  // seconds
   const double seconds = static_cast<double>(end_ns - begin_ns) * 1e-9;
   const bool is_short = seconds > 0 && seconds < kLongest;
-  const auto faster =
-      is_short ? made_faster(sensors, begin_ns, end_ns, mount_, origin_) : std::nullopt;
-  const auto wheel = is_short ? wheel_speed(sensors, begin_ns, end_ns) : std::nullopt;
+  std::optional<double> faster, wheel;
+  if (is_short) {
+    faster = made_faster(sensors, begin_ns, end_ns, mount_, origin_);
+    wheel = wheel_speed(sensors, begin_ns, end_ns);
+  }
   if (!wheel || slips_) speed_ = speed;
   if (!faster) {
     slips_ = is_known_ = false;
