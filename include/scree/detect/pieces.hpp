@@ -35,8 +35,8 @@ private:
   FixedVector<std::int64_t> wholes_;  // ids of those kept so far, as they came in
 };
 
-/// Of a rock and a hole whose middle lies in the rock's box takes out the less sure one: the hole is
-/// what the rock hides, or the rock was the hole's far rim. The order stays.
+/// Of a rock and a hole whose middle lies in the rock's box takes out the less sure one: the hole
+/// is what the rock hides, or the rock was the hole's far rim. The order stays.
 void keep_the_surer(FixedVector<Obstacle>& obstacles);
 
 }  // namespace scree

@@ -21,9 +21,9 @@ struct Reading {
 /// cause. A counter moves by the smallest difference of two readings within its length; a speed by
 /// its mean over the time between them.
 ///
-/// Assumptions: a frame every 0.5 to 100 ms. A time stamp is off by up to 30 ms, because USB adapters
-/// hand frames on in bursts; so speeds are judged over more than one interval, and one step of the
-/// counter is never a speed by itself.
+/// Assumptions: a frame every 0.5 to 100 ms. A time stamp is off by up to 30 ms, because USB
+/// adapters hand frames on in bursts; so speeds are judged over more than one interval, and one
+/// step of the counter is never a speed by itself.
 ///
 /// A reading is accepted, but for these rules, the first that applies:
 ///
