@@ -67,18 +67,7 @@ bool HealthWatch::update(std::int64_t now_ns, const LidarStatus& lidar, const Im
   const bool sees = health.reason.empty();
   health.state = sees ? health_t::OK : health_t::BLIND;
   if (health.state != before) say_sight(now_ns, health.reason);
-  sweeps_dropped_.say(now_ns, lidar.sweeps_dropped, "sweeps dropped: the detector was too slow",
-                      log_);
-  sweeps_not_covered_.say(now_ns, detector.not_covered,
-                          "sweeps went on without the samples of IMU or encoder that cover them: "
-                          "those came later than map.wait",
-                          log_);
-  slips_.say(now_ns, detector.slips, "sweeps during which the wheel slipped: it was not believed",
-             log_);
-  heading_resets_.say(now_ns, detector.heading_resets,
-                      "turns of the IMU's yaw that its angular rate did not know of: they were not "
-                      "believed",
-                      log_);
+  say_losses(now_ns, lidar, detector);
   return has_changed || health.reason != reason_before;
 }
 
@@ -176,6 +165,26 @@ void HealthWatch::say_sight(std::int64_t now_ns, const std::string& reason) {
   if (sees) return;
   said_reason_ = reason;
   said_at_ns_ = now_ns;
+}
+
+void HealthWatch::say_losses(std::int64_t now_ns, const LidarStatus& lidar,
+                             const DetectorStatus& detector) {
+  struct Loss {
+    std::uint64_t count;
+    const char* what;
+  };
+  const std::array<Loss, kLosses> losses = {{
+      {lidar.sweeps_dropped, "sweeps dropped: the detector was too slow"},
+      {detector.not_covered,
+       "sweeps went on without the samples of IMU or encoder that cover them: those came later "
+       "than map.wait"},
+      {detector.slips, "sweeps during which the wheel slipped: it was not believed"},
+      {detector.heading_resets,
+       "turns of the IMU's yaw that its angular rate did not know of: they were not believed"},
+  }};
+  for (std::size_t i = 0; i < kLosses; ++i) {
+    losses_[i].say(now_ns, losses[i].count, losses[i].what, log_);
+  }
 }
 
 void HealthWatch::say_first_packets(const LidarStatus& lidar) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <scree/health_t.hpp>
 #include <string>
 #include <utility>
@@ -59,6 +61,7 @@ private:
   void say_sight(std::int64_t now_ns, const std::string& reason);
   void say_first_packets(const LidarStatus& lidar);
   void say_pulses(const LidarStatus& lidar);
+  void say_losses(std::int64_t now_ns, const LidarStatus& lidar, const DetectorStatus& detector);
 
   Settings settings_;
   std::string port_;  // "UDP port 2368"
@@ -70,7 +73,8 @@ private:
   std::int64_t said_at_ns_ = 0;
   bool said_datagram_ = false, said_packet_ = false;
   bool said_pulse_ = false, said_pps_lost_ = false, said_no_pulse_ = false;
-  Growth sweeps_dropped_, sweeps_not_covered_, slips_, heading_resets_;
+  static constexpr std::size_t kLosses = 4;
+  std::array<Growth, kLosses> losses_;
 };
 
 }  // namespace scree
