@@ -19,6 +19,14 @@ constexpr std::int32_t kMostLateTicks = 10'000;
 /// After this the packet counter may have wrapped: nothing is compared with what was before.
 constexpr std::int64_t kLongestGap = 15 * kSecond;
 
+/// No MTi sends more messages in so long, and a burst of those that waited: a counter that went on
+/// by more has started over, or is garbled.
+std::int64_t most_messages(std::int64_t elapsed_ns) {
+  constexpr std::int64_t kMostInSecond = 2000, kMostWaiting = 100;
+  return kMostWaiting +
+         std::clamp<std::int64_t>(elapsed_ns, 0, kLongestGap) * kMostInSecond / kSecond;
+}
+
 /// Increments over a longer time are no rate.
 constexpr std::int64_t kLongestInterval = kSecond;
 
@@ -134,6 +142,7 @@ Refusal ImuStream::judge(const Measurement& measurement, std::int64_t arrival_ns
       if (step == 0) return Refusal::duplicate;
       if (step < 0 && step > -kMostLateMessages) return Refusal::late;
       missing_ = std::max(step - 1, 0);
+      if (missing_ > most_messages(arrival_ns - last_arrival_ns_)) missing_ = 0;
     }
   } else if (measurement.sample_time_fine && measurement.is_inertial() && last_tick_) {
     const auto step = static_cast<std::int32_t>(*measurement.sample_time_fine - *last_tick_);

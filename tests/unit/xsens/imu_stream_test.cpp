@@ -98,6 +98,24 @@ TEST(ImuStream, NoMessageIsBelievedWithNumbersThatNoImuMeasures) {
   EXPECT_EQ(listener.stream.counters().lost, 3U);
 }
 
+TEST(ImuStream, NoMoreAreLostThanAnMtiSendsMeanwhile) {
+  Listener listener;
+  Steady send(listener);
+  const auto lost_after = [&](unsigned counted, std::int64_t silent_ns) {
+    const std::uint64_t before = listener.stream.counters().lost;
+    send.now_ns += silent_ns;
+    send({counter(counted), kTurn, kRate, kForce});
+    return listener.stream.counters().lost - before;
+  };
+  lost_after(10, 0);
+  EXPECT_EQ(lost_after(61, 500 * kMillisecond), 50U);
+  EXPECT_EQ(lost_after(861, 400 * kMillisecond), 799U);   // at 2 kHz
+  EXPECT_EQ(lost_after(20'000, 400 * kMillisecond), 0U);  // garbled: 49 times as fast
+  EXPECT_EQ(lost_after(20'001, 0), 0U);
+  EXPECT_EQ(lost_after(1, 3000 * kMillisecond), 0U);       // started over: no step forward
+  EXPECT_EQ(lost_after(30'000, 3000 * kMillisecond), 0U);  // started over: a step of 29,999
+}
+
 TEST(ImuStream, OtherMessagesAreCountedAndNoSamples) {
   Listener listener;
   listener.stream.take(joined({test::message(0x3E, {}), test::message(0x42, {4}),
