@@ -87,11 +87,9 @@ bool is_piece(const Obstacle& whole, const Obstacle& piece) {
   const double distance = distance_between(whole, piece);
   if (distance > kFarthest) return false;
 
-  constexpr double kBeside = 0.3;
   constexpr std::uint32_t kLarger = 3;
-  if (distance_to_box(whole, piece.center) <= kBeside && whole.points > kLarger * piece.points) {
-    return true;
-  }
+  const bool is_inside = distance_to_box(whole, piece.center) <= 0;
+  if (is_inside && whole.points > kLarger * piece.points) return true;
   constexpr double kNear = 0.5, kSliver = 0.15;
   const bool is_sliver = piece.extent.y() <= kSliver;
   const bool is_hole = piece.kind == ObstacleKind::negative;

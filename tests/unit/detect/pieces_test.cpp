@@ -100,6 +100,10 @@ TEST(JoinPieces, RocksBesideOneAnotherStayTwo) {
   EXPECT_EQ(joined({box(3, 1, 0.6, 0.5, 100), box(4, 1, 0.6, 0.5, 90)}).size(), 2U);
   EXPECT_EQ(joined({box(3, 1, 1, 0.8, 200), box(4.5, 1, 0.6, 0.1, 12)}).size(), 2U)
       << "a sliver 0.7 m off";
+  EXPECT_EQ(joined({box(3, 1, 2, 1.5, 2000), box(4.25, 1, 0.45, 0.3, 35)}).size(), 2U)
+      << "a small one at the foot of a large one";
+  EXPECT_EQ(joined({box(3, 1, 2, 1.5, 2000), box(3.9, 1, 0.45, 0.3, 35)}).size(), 1U)
+      << "a part of it";
 }
 
 TEST(JoinPieces, HolesBesideOneAnotherAreOne) {
