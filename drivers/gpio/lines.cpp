@@ -1,5 +1,6 @@
 #include "scree/drivers/gpio/lines.hpp"
 
+#include <array>
 #include <cstdlib>
 #include <utility>
 
@@ -81,6 +82,16 @@ Result<std::string> holder_of(const std::string& name) {
   const auto parts = parts_of(name);
   if (!parts) return tl::make_unexpected(parts.error());
   return holder_of(parts->chip, parts->line);
+}
+
+Result<void> check_names(const GpioSettings& settings) {
+  const std::array<std::pair<const char*, const std::string&>, 3> names = {
+      {{"pps", settings.pps}, {"stop", settings.stop}, {"heartbeat", settings.heartbeat}}};
+  for (const auto& [key, name] : names) {
+    if (name.empty()) continue;
+    if (const auto parts = parts_of(name); !parts) return of_key(key, name, parts.error());
+  }
+  return {};
 }
 
 Result<Lines> Lines::open(const GpioSettings& settings) {

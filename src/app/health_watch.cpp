@@ -178,7 +178,9 @@ void HealthWatch::say_losses(std::int64_t now_ns, const LidarStatus& lidar,
       {detector.not_covered,
        "sweeps went on without the samples of IMU or encoder that cover them: those came later "
        "than map.wait"},
-      {detector.slips, "sweeps during which the wheel slipped: it was not believed"},
+      {detector.slips,
+       "sweeps during which the wheel slipped: it was not believed; if that never ends, "
+       "encoder.scale is wrong, or its sign"},
       {detector.heading_resets,
        "turns of the IMU's yaw that its angular rate did not know of: they were not believed"},
   }};

@@ -78,6 +78,9 @@ scree::Result<scree::RunningConfig> read_config(const std::filesystem::path& fil
   if (const auto reason = scree::xsens::line_too_slow(config->settings().imu)) {
     return scree::fail(file.string() + ": " + *reason);
   }
+  if (const auto names = scree::gpio::check_names(config->settings().gpio); !names) {
+    return scree::fail(file.string() + ": " + names.error().message);
+  }
   return config;
 }
 

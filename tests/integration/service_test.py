@@ -117,6 +117,8 @@ class ServiceTest(ProgramTest):
         self.assert_fails(self.run_to_end(*check), "more than imu.baud = 9600")
         self.configure('[detect.map]\nnetwork = "none.txt"\n')
         self.assert_fails(self.run_to_end(*check), "none.txt")
+        self.configure('[gpio]\nstop = "gpiochip0"\n')
+        self.assert_fails(self.run_to_end(*check), 'gpio.stop = "gpiochip0": must be CHIP:LINE')
 
     def test_the_journal_gets_levels(self):
         with open(self.path("log"), "w") as log:

@@ -37,6 +37,17 @@ TEST(Lines, ANameHasTwoParts) {
   }
 }
 
+TEST(CheckNames, OpensNothing) {
+  GpioSettings settings;
+  EXPECT_TRUE(check_names(settings));
+  settings.pps = "nochip:4";
+  settings.heartbeat = "/dev/nochip:HEARTBEAT";
+  EXPECT_TRUE(check_names(settings));
+  settings.heartbeat = "17";
+  EXPECT_EQ(check_names(settings).error().message,
+            "gpio.heartbeat = \"17\": must be CHIP:LINE, as gpiochip0:17 is");
+}
+
 TEST(HolderOf, SaysWhatIsWrongWithAName) {
   EXPECT_THAT(holder_of("nochip:4").error().message, HasSubstr("no GPIO chip nochip"));
   EXPECT_THAT(holder_of("17").error().message, HasSubstr("must be CHIP:LINE"));

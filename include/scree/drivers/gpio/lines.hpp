@@ -58,6 +58,9 @@ private:
 /// @param name as that of an Output
 Result<std::string> holder_of(const std::string& name);
 
+/// Whether all that is named can be the name of a line; nothing is opened. The error names the key.
+Result<void> check_names(const GpioSettings& settings);
+
 /// The lines that the configuration names.
 struct Lines {
   std::optional<PulseInput> pps;
