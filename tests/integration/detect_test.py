@@ -197,6 +197,7 @@ class DetectTest(unittest.TestCase):
             "vlp16/indoor_10hz.pcap": 14,
             "vlp16/indoor_20hz.pcap": 52,
             "vlp16/indoor_dual_return.pcap": 5,
+            "captures/interop": 81,
         }
         if not os.path.isdir(DATA):
             self.skipTest(f"the real recordings are not at {DATA}")
