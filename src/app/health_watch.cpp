@@ -171,7 +171,7 @@ void HealthWatch::say_losses(std::int64_t now_ns, const LidarStatus& lidar,
                              const DetectorStatus& detector) {
   struct Loss {
     std::uint64_t count;
-    const char* what;
+    std::string_view what;
   };
   const std::array<Loss, kLosses> losses = {{
       {lidar.sweeps_dropped, "sweeps dropped: the detector was too slow"},

@@ -4,7 +4,7 @@
 
 namespace scree {
 
-void Growth::say(std::int64_t now_ns, std::uint64_t count, const std::string& what, LogLines& log) {
+void Growth::say(std::int64_t now_ns, std::uint64_t count, std::string_view what, LogLines& log) {
   constexpr std::int64_t kPause = 10'000'000'000;
   if (count == said_ || (said_ != 0 && now_ns - said_at_ns_ < kPause)) return;
   log.push_back(

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace scree {
@@ -16,7 +17,7 @@ using LogLines = std::vector<LogLine>;
 /// A count that is worth a line when it has grown, but not more often than every ten seconds.
 class Growth {
 public:
-  void say(std::int64_t now_ns, std::uint64_t count, const std::string& what, LogLines& log);
+  void say(std::int64_t now_ns, std::uint64_t count, std::string_view what, LogLines& log);
 
 private:
   std::uint64_t said_ = 0;
