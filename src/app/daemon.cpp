@@ -11,7 +11,6 @@
 #include <thread>
 #include <utility>
 
-#include "clocks.hpp"
 #include "encoder_reader.hpp"
 #include "found_list.hpp"
 #include "hand_over.hpp"
@@ -23,6 +22,7 @@
 #include "page_faults.hpp"
 #include "real_time.hpp"
 #include "scree/publish/publisher.hpp"
+#include "scree/sync/clocks.hpp"
 #include "thermometer.hpp"
 #include "turn_watch.hpp"
 #include "work_watch.hpp"

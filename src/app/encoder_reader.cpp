@@ -6,7 +6,7 @@
 #include <iterator>
 #include <utility>
 
-#include "clocks.hpp"
+#include "scree/sync/clocks.hpp"
 
 namespace scree {
 namespace {

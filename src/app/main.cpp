@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "clocks.hpp"
 #include "latest.hpp"
 #include "log_format.hpp"
 #include "real_time.hpp"
@@ -14,6 +13,7 @@
 #include "scree/app/pipeline.hpp"
 #include "scree/drivers/gpio/lines.hpp"
 #include "scree/drivers/xsens/start_up.hpp"
+#include "scree/sync/clocks.hpp"
 #include "service_manager.hpp"
 #include "supervisor.hpp"
 

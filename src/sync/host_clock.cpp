@@ -8,7 +8,7 @@ void HostClock::look(const ClockReading& now) {
   const std::int64_t difference = now.real_ns - now.monotonic_ns;
   if (!has_looked_) {
     has_looked_ = true;
-    difference_ns_ = difference;
+    first_ns_ = difference_ns_ = difference;
     return;
   }
   if (std::abs(difference - difference_ns_) <= kJitter + now.width_ns) return;
@@ -31,6 +31,12 @@ std::int64_t HostClock::to_monotonic(std::int64_t real_ns, const ClockReading& n
   consider(difference_ns_);
   if (steps_ > 0 && now.monotonic_ns - step_ns_ < kLongestWait) consider(before_ns_);
   return best;
+}
+
+std::int64_t HostClock::to_first_real(std::int64_t real_ns, const ClockReading& now) {
+  look(now);
+  // As long as nobody has set the clock a stamp stays as it is, however long it waited.
+  return steps_ == 0 ? real_ns : to_monotonic(real_ns, now) + first_ns_;
 }
 
 std::int64_t HostClock::to_real(std::int64_t monotonic_ns, const ClockReading& now) {

@@ -85,12 +85,13 @@ void record(const RecordOptions& options) {
   const Settings settings = value_or_fail(load_settings(options.config));
   const fs::path config = options.config, folder = options.folder;
   value_or_fail(encoder::with_dbc(settings.encoder, config));
-  LidarRecorder lidar(settings.lidar);
+  HostClock clock;
+  LidarRecorder lidar(settings.lidar, clock);
   make_capture_folder(folder);
   keep_config(config, folder);
   lidar.create(folder / "lidar.pcap");
-  ImuRecorder imu(settings.imu, folder / "imu.pcap");
-  CanRecorder can(settings.encoder.interface, folder / "can.log");
+  ImuRecorder imu(settings.imu, folder / "imu.pcap", clock);
+  CanRecorder can(settings.encoder.interface, folder / "can.log", clock);
 
   stop_on_signals();
   fmt::print(stderr, "scree: recording to {}\n", folder.string());

@@ -36,8 +36,8 @@ std::string Recorder::progress() const {
                      kilobytes < 1e3 ? kilobytes : kilobytes / 1e3, kilobytes < 1e3 ? "kB" : "MB");
 }
 
-LidarRecorder::LidarRecorder(const LidarSettings& settings)
-    : Recorder("lidar", "packets"),
+LidarRecorder::LidarRecorder(const LidarSettings& settings, HostClock& clock)
+    : Recorder("lidar", "packets", clock),
       data_(value_or_fail(UdpReceiver::open(settings.address, settings.port, settings.sender))),
       position_(value_or_fail(
           UdpReceiver::open(settings.address, settings.position_port, settings.sender))) {}
@@ -71,7 +71,7 @@ void LidarRecorder::read(UdpReceiver& port) {
   for (int i = 0; i < kBatch; ++i) {
     const auto received = port.receive(buffer_);
     if (!received) return;
-    file_->write({received->arrival_ns, received->sender, received->sender_port,
+    file_->write({steady(received->arrival_ns), received->sender, received->sender_port,
                   static_cast<std::uint16_t>(port.port()), received->bytes});
     wrote(received->bytes.size());
   }
@@ -81,8 +81,9 @@ void LidarRecorder::close() {
   require(file_->close());
 }
 
-ImuRecorder::ImuRecorder(const ImuSettings& settings, const std::filesystem::path& file)
-    : Recorder("imu", "reads"),
+ImuRecorder::ImuRecorder(const ImuSettings& settings, const std::filesystem::path& file,
+                         HostClock& clock)
+    : Recorder("imu", "reads", clock),
       settings_(settings),
       file_(value_or_fail(PcapWriter::create_serial(file))) {}
 
@@ -93,7 +94,7 @@ void ImuRecorder::add_descriptors(std::vector<pollfd>& wait_for) const {
 void ImuRecorder::work(std::int64_t now_ns) {
   if (!is_open(device_, now_ns, [&] { return xsens::Device::open(settings_); })) return;
   while (const auto received = device_->advance(now_ns)) {
-    file_.write(received->arrival_ns, received->bytes);
+    file_.write(steady(received->arrival_ns), received->bytes);
     wrote(received->bytes.size());
   }
   const bool measures = device_->state() == xsens::DeviceState::measuring;
@@ -105,8 +106,8 @@ void ImuRecorder::close() {
   require(file_.close());
 }
 
-CanRecorder::CanRecorder(std::string interface, const std::filesystem::path& file)
-    : Recorder("can", "frames"),
+CanRecorder::CanRecorder(std::string interface, const std::filesystem::path& file, HostClock& clock)
+    : Recorder("can", "frames", clock),
       interface_(std::move(interface)),
       file_(value_or_fail(CanLogWriter::create(file))) {}
 
@@ -116,7 +117,8 @@ void CanRecorder::add_descriptors(std::vector<pollfd>& wait_for) const {
 
 void CanRecorder::work(std::int64_t now_ns) {
   if (!is_open(socket_, now_ns, [&] { return encoder::CanSocket::open(interface_); })) return;
-  while (const auto frame = socket_->receive()) {
+  while (auto frame = socket_->receive()) {
+    frame->t_ns = steady(frame->t_ns);
     file_.write(*frame, interface_);
     wrote(frame->size);
   }

@@ -15,13 +15,16 @@
 #include "scree/drivers/encoder/can_socket.hpp"
 #include "scree/drivers/velodyne/udp_receiver.hpp"
 #include "scree/drivers/xsens/device.hpp"
+#include "scree/sync/clocks.hpp"
 
 namespace scree::cli {
 
 /// One sensor's part of a recording.
 class Recorder {
 public:
-  Recorder(const char* name, const char* unit) : name_(name), unit_(unit) {}
+  /// Keeps a reference to the clock that all of a recording share.
+  Recorder(const char* name, const char* unit, HostClock& clock)
+      : name_(name), unit_(unit), clock_(clock) {}
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
   virtual ~Recorder() = default;
@@ -44,6 +47,10 @@ protected:
     ++count_;
     bytes_ += bytes;
   }
+  /// What is written of a sensor's wall-clock stamp: the host's clock may be set meanwhile.
+  std::int64_t steady(std::int64_t stamp_ns) {
+    return clock_.to_first_real(stamp_ns, read_clocks());
+  }
   /// Whether it is there; where it is missing it is tried once a second.
   template <class Device, class Open>
   bool is_open(std::optional<Device>& device, std::int64_t now_ns, Open open);
@@ -53,6 +60,7 @@ protected:
 private:
   const char* name_;
   const char* unit_;
+  HostClock& clock_;
   std::uint64_t count_ = 0, bytes_ = 0;
   std::int64_t retry_ns_ = 0;
 };
@@ -61,7 +69,7 @@ private:
 class LidarRecorder final : public Recorder {
 public:
   /// Opens the ports; throws Failure where another program has them.
-  explicit LidarRecorder(const LidarSettings& settings);
+  LidarRecorder(const LidarSettings& settings, HostClock& clock);
 
   /// Throws Failure.
   void create(const std::filesystem::path& file);
@@ -81,7 +89,7 @@ private:
 /// What each read from the IMU's port brings, once it measures.
 class ImuRecorder final : public Recorder {
 public:
-  ImuRecorder(const ImuSettings& settings, const std::filesystem::path& file);
+  ImuRecorder(const ImuSettings& settings, const std::filesystem::path& file, HostClock& clock);
 
   void add_descriptors(std::vector<pollfd>& wait_for) const override;
   void work(std::int64_t now_ns) override;
@@ -96,7 +104,7 @@ private:
 /// Every frame of the encoder's CAN interface, of whatever device.
 class CanRecorder final : public Recorder {
 public:
-  CanRecorder(std::string interface, const std::filesystem::path& file);
+  CanRecorder(std::string interface, const std::filesystem::path& file, HostClock& clock);
 
   void add_descriptors(std::vector<pollfd>& wait_for) const override;
   void work(std::int64_t now_ns) override;

@@ -31,6 +31,9 @@ public:
   /// Monotonic time of a wall-clock stamp that was taken before `now`. A stamp that is older than
   /// kLongestWait or of the future is given the time of `now`.
   std::int64_t to_monotonic(std::int64_t real_ns, const ClockReading& now);
+  /// The same in wall-clock time, by the wall clock as it was set at first: what a recording keeps,
+  /// in which time must run on.
+  std::int64_t to_first_real(std::int64_t real_ns, const ClockReading& now);
   /// Wall-clock time of a monotonic time, by the wall clock as it is set now.
   std::int64_t to_real(std::int64_t monotonic_ns, const ClockReading& now);
 
@@ -41,7 +44,8 @@ private:
   void look(const ClockReading& now);
 
   bool has_looked_ = false;
-  std::int64_t difference_ns_ = 0;  ///< real minus monotonic
+  std::int64_t first_ns_ = 0;       ///< real minus monotonic when it first looked
+  std::int64_t difference_ns_ = 0;  ///< the same now
   std::int64_t before_ns_ = 0;      ///< the same before the last step
   std::int64_t step_ns_ = 0;        ///< monotonic time at which the last step was seen
   std::uint64_t steps_ = 0;

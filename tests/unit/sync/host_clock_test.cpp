@@ -54,6 +54,20 @@ TEST(HostClock, ASetWallClockDisturbsNoStamp) {
   }
 }
 
+TEST(HostClock, InARecordingTimeRunsOnWhenTheWallClockIsSet) {
+  for (const std::int64_t step : {-3600 * kSecond, -kSecond / 3, 3600 * kSecond}) {
+    Host host;
+    HostClock clock;
+    const std::int64_t began = host.real_ns();
+    EXPECT_EQ(clock.to_first_real(began - 10 * kSecond, host.now()), began - 10 * kSecond)
+        << "it waited long, and nobody has set the clock";
+    for (int i = 0; i < 100; ++i, host.monotonic_ns += 60 * kMillisecond) {
+      if (i == 50) host.set_by_ns = step;
+      EXPECT_EQ(clock.to_first_real(host.real_ns(), host.now()), began + i * 60 * kMillisecond);
+    }
+  }
+}
+
 TEST(HostClock, IsNotMovedByTheJitterOfReadings) {
   Host host;
   HostClock clock;
