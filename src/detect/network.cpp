@@ -17,7 +17,7 @@ namespace {
 constexpr std::string_view kFormat = "scree_network";
 constexpr int kVersion = 1;
 constexpr double kInputLimit = 100;
-constexpr std::array<std::string_view, 3> kFormNames = {"raw", "log1p", "logit"};
+constexpr std::array<std::string_view, 4> kFormNames = {"raw", "log1p", "root", "logit"};
 
 double sigmoid(double x) noexcept {
   return 1 / (1 + std::exp(-x));
@@ -132,6 +132,7 @@ double apply(InputForm form, float feature) noexcept {
   const auto value = static_cast<double>(feature);
   if (form == InputForm::log1p) return std::log1p(std::max(value, 0.0));
   if (form == InputForm::raw) return value;
+  if (form == InputForm::root) return std::copysign(std::sqrt(std::abs(value)), value);
   const double share = std::clamp(value, 0.0, 1.0);
   return std::log((share + 0.01) / (1.01 - share));
 }

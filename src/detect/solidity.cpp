@@ -7,6 +7,15 @@
 #include "scree/detect/neighbours.hpp"
 
 namespace scree {
+namespace {
+
+bool is_solid(const BeamCount& beams) {
+  constexpr float kShare = 0.9F;
+  return beams.ended >= kShare * (beams.ended + beams.passed) &&
+         beams.scatter < Solidity::kFirmScatter * beams.ended;
+}
+
+}  // namespace
 
 void Solidity::build(PointView cloud, std::span<const BeamCount> beams,
                      const GroundSurface& surface, float lowest, float highest) {
@@ -16,17 +25,24 @@ void Solidity::build(PointView cloud, std::span<const BeamCount> beams,
   passed_.assign(cells, 0);
   scatter_.assign(cells, 0);
   around_.assign(cells, 1);
+  solid_.assign(cells, 0);
   highest_.assign(cells, 0);
+  all_ended_.assign(cells, 0);
+  all_scatter_.assign(cells, 0);
   loose_.assign(cells, 0);
   for (std::size_t i = 0; i < beams.size(); ++i) {
     const float x = cloud.x[i], y = cloud.y[i];
     if (!std::isfinite(x) || !std::isfinite(y)) continue;
     const float height = cloud.z[i] - surface.height(x, y);
-    if (!(height >= lowest && height <= highest)) continue;
+    if (!(height <= highest)) continue;
     const std::size_t cell = surface.cell_at(x, y);
+    all_ended_[cell] += beams[i].ended;
+    all_scatter_[cell] += beams[i].scatter;
+    if (height < lowest) continue;
     ended_[cell] += static_cast<float>(beams[i].ended);
     passed_[cell] += static_cast<float>(beams[i].passed);
     scatter_[cell] += beams[i].scatter;
+    if (is_solid(beams[i])) solid_[cell] += beams[i].ended;
     highest_[cell] = std::max(highest_[cell], height);
   }
   if (beams.empty()) return;

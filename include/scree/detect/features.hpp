@@ -7,7 +7,7 @@ namespace scree {
 
 /// What the network is told of a cluster. First F1-F5 of the paper (section 3.2): heights in metres
 /// above the ground, and counts of points. The others are ours and need the ground's surface; they
-/// are 0 without it. Where nothing is known of beams all is solid.
+/// are 0 without it. Where nothing is known of beams all is solid. Scatter: see RangeScatter.
 enum Feature : std::size_t {
   mean_height,
   max_height,
@@ -31,9 +31,17 @@ enum Feature : std::size_t {
   steepest,       ///< of its cells: upper tenth of the steepest slope in each, metres per metre
   edge_height,    ///< median height or depth of its cells next to seen ground, metres
   edge_share,     ///< of those cells: that reach half its height
-  range_scatter,  ///< of the beams that ended in it: mean, see RangeScatter, metres
+  range_scatter,  ///< median over its cells: mean of the beams that ended there, metres
   loose_around,   ///< of the cells up to 0.3 m around its box: with something loose, see Solidity
   over_loose,     ///< its highest point above the highest in those, metres; above the ground: none
+  least_scatter,  ///< lower quartile of what range_scatter is the median of, metres
+  firm_cells,     ///< share of its cells where that is below Solidity::kFirmScatter
+  firm_beams,     ///< of the beams that ended in it: share in those cells
+  solid_beams,    ///< of the same: share that Solidity::solid() counts
+  solid_core,     ///< most of these in one of its cells
+  all_beams,      ///< beams that ended in its cells at any height, so in a hole, too
+  all_scatter,    ///< mean over these, metres
+  ground_scatter,  ///< the same over those up to 0.6 m around its box: grass hides the ground
   kFeatures
 };
 inline constexpr std::size_t kPaperFeatures = 5;

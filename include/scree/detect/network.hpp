@@ -31,6 +31,7 @@ struct Answer {
 enum class InputForm : std::uint8_t {
   raw,    ///< as it is
   log1p,  ///< log(1 + x); for counts, which span decades from a sparse sweep to a dense cloud
+  root,   ///< its square root, with its sign; for lengths, whose small values tell most
   logit   ///< log((x + 0.01) / (1.01 - x)), x cut to 0..1; for confidences, whose ends matter most
 };
 

@@ -17,12 +17,18 @@ namespace scree {
 /// blades of grass most go on, and the others end as deep in it as they happen to.
 class Solidity {
 public:
+  /// Ranges on a rock scatter less than this, metres: by the sensor's noise.
+  static constexpr float kFirmScatter = 0.02F;
+
   explicit Solidity(std::size_t max_cells)
       : ended_(max_cells),
         passed_(max_cells),
         scatter_(max_cells),
         around_(max_cells),
+        solid_(max_cells),
         highest_(max_cells),
+        all_ended_(max_cells),
+        all_scatter_(max_cells),
         loose_(max_cells),
         seen_(max_cells),
         patch_(max_cells) {}
@@ -36,6 +42,11 @@ public:
   float ended(std::size_t cell) const { return ended_[cell]; }
   float passed(std::size_t cell) const { return passed_[cell]; }
   float scatter(std::size_t cell) const { return scatter_[cell]; }
+  /// Beams that ended in points which stop at least nine of ten and hardly scatter them.
+  float solid(std::size_t cell) const { return solid_[cell]; }
+  /// Of the points at any height up to the highest.
+  float all_ended(std::size_t cell) const { return all_ended_[cell]; }
+  float all_scatter(std::size_t cell) const { return all_scatter_[cell]; }
   float of(std::size_t cell) const { return share(ended_[cell], passed_[cell]); }
   /// Whether beams ended on what stands in it, and hardly any went on.
   bool stops_all(std::size_t cell) const { return ended_[cell] > 0 && of(cell) >= kAll; }
@@ -62,7 +73,7 @@ private:
   void settle(std::size_t columns);
   bool gather(std::size_t start, std::size_t columns);
 
-  FixedVector<float> ended_, passed_, scatter_, around_, highest_;
+  FixedVector<float> ended_, passed_, scatter_, around_, solid_, highest_, all_ended_, all_scatter_;
   FixedVector<std::uint8_t> loose_, seen_;
   FixedVector<std::uint32_t> patch_;  // cells that hang together
 };

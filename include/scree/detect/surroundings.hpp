@@ -38,6 +38,7 @@ private:
   std::size_t quarter_at(float x, float y, const GroundSurface& surface) const;
   bool is_amid_ground(float x, float y, const GroundSurface& surface) const;
   void measure_solidity(Features& features, const Solidity& solidity);
+  void measure_scatter(Features& features, const Solidity& solidity);
   void measure_edge(Features& features, const GroundSurface& surface);
 
   FixedVector<std::uint8_t> sides_;

@@ -118,6 +118,8 @@ TEST(Network, FormsAreWhatTheySay) {
   EXPECT_EQ(apply(InputForm::raw, -3), -3);
   EXPECT_DOUBLE_EQ(apply(InputForm::log1p, 3), std::log(4));
   EXPECT_EQ(apply(InputForm::log1p, -3), 0);
+  EXPECT_EQ(apply(InputForm::root, 0.25F), 0.5);
+  EXPECT_EQ(apply(InputForm::root, -4), -2) << "depths keep their sign";
   EXPECT_DOUBLE_EQ(apply(InputForm::logit, 0.5F), 0);
   EXPECT_NEAR(apply(InputForm::logit, 1), std::log(101), 1e-9);
   EXPECT_NEAR(apply(InputForm::logit, 0.25F), -apply(InputForm::logit, 0.75F), 1e-12);

@@ -80,6 +80,30 @@ TEST_F(SolidityTest, CountsWhatStandsOnTheGroundCellByCell) {
   EXPECT_GT(counted, 60) << "cells of the rock";
 }
 
+TEST_F(SolidityTest, CountsTheBeamsOfSolidPointsAndThoseAtAnyHeight) {
+  const auto look_at = [&](BeamCount standing) {
+    beams_.clear();
+    for (std::size_t i = 0; i < cloud_.size(); ++i) {
+      const float z = cloud_.z[i];
+      beams_.push_back(z == 0.3F ? standing : z < 1 ? BeamCount{10, 0, 0.5F} : BeamCount{7, 0, 7});
+    }
+    solidity_.build(cloud_, beams_, surface_, kLowest, kHighest);
+    return solidity_.solid(middle());
+  };
+  EXPECT_GT(look_at({100, 5, 1}), 0);
+  EXPECT_EQ(solidity_.solid(middle()), solidity_.ended(middle()));
+  EXPECT_EQ(look_at({100, 20, 1}), 0) << "beams went on";
+  EXPECT_EQ(look_at({100, 0, 3}), 0) << "ranges scatter";
+  EXPECT_EQ(solidity_.all_ended(middle()), solidity_.ended(middle()));
+  EXPECT_EQ(solidity_.all_scatter(middle()), solidity_.scatter(middle()));
+
+  const std::size_t ground = surface_.cell_at(1, 1), branch = surface_.cell_at(1.8F, 1.8F);
+  EXPECT_GT(solidity_.all_ended(ground), 0);
+  EXPECT_FLOAT_EQ(solidity_.all_scatter(ground) / solidity_.all_ended(ground), 0.05F);
+  EXPECT_EQ(solidity_.ended(ground), 0);
+  EXPECT_EQ(solidity_.all_ended(branch), 0) << "the robot passes under it";
+}
+
 TEST_F(SolidityTest, WithoutBeamsAllIsSolid) {
   solidity_.build(cloud_, beams_, surface_, kLowest, kHighest);
   EXPECT_LT(solidity_.around(middle()), 0.6);
@@ -87,6 +111,8 @@ TEST_F(SolidityTest, WithoutBeamsAllIsSolid) {
   EXPECT_EQ(solidity_.around(middle()), 1);
   EXPECT_EQ(solidity_.of(middle()), 1);
   EXPECT_EQ(solidity_.ended(middle()), 0);
+  EXPECT_EQ(solidity_.all_ended(middle()), 0);
+  EXPECT_EQ(solidity_.solid(middle()), 0);
 }
 
 TEST_F(SolidityTest, AllIsStoppedWhereHardlyABeamWentOn) {

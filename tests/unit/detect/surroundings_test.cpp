@@ -83,7 +83,11 @@ TEST(Surroundings, MeasuresTheShareOfTheBeamsThatEnded) {
   EXPECT_GT(half[core_solidity], 0.95);
   const auto above = std::ranges::count_if(cloud.z, [](float z) { return z > 0; });
   EXPECT_NEAR(half[beam_count] / (100 * static_cast<float>(above)), 1, 0.05);
-  EXPECT_NEAR(half[range_scatter], 0.03, 0.003);
+  EXPECT_NEAR(half[least_scatter], 0.01, 0.002);
+  EXPECT_NEAR(half[firm_cells], 0.5, 0.1);
+  EXPECT_NEAR(half[firm_beams], 0.5, 0.1);
+  EXPECT_NEAR(half[solid_beams], 0.5, 0.1);
+  EXPECT_GT(half[solid_core], 100);
 
   for (BeamCount& count : beams) count = {100, 300, 5};
   const Features grass = features_of(cloud, beams);
@@ -91,6 +95,26 @@ TEST(Surroundings, MeasuresTheShareOfTheBeamsThatEnded) {
   EXPECT_NEAR(grass[top_solidity], 0.25, 0.01);
   EXPECT_NEAR(grass[core_solidity], 0.25, 0.01);
   EXPECT_NEAR(grass[range_scatter], 0.05, 1e-4);
+  EXPECT_NEAR(grass[least_scatter], 0.05, 1e-4);
+  for (const Feature firm : {firm_cells, firm_beams, solid_beams, solid_core}) {
+    EXPECT_EQ(grass[firm], 0) << firm;
+  }
+}
+
+TEST(Surroundings, CountsTheBeamsInAHoleAndTheGrassBesideIt) {
+  const PointCloud cloud =
+      ground_with([](float x, float y, float) { return inside(x, y) ? -0.4F : 0.0F; });
+  std::vector<BeamCount> beams;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    beams.push_back(cloud.z[i] < 0 ? BeamCount{100, 0, 1} : BeamCount{100, 300, 5});
+  }
+  const Features hole = features_of(cloud, beams);
+  ASSERT_NEAR(hole[min_height], -0.4, 0.01);
+  EXPECT_EQ(hole[beam_count], 0) << "nothing stands there";
+  const auto below = std::ranges::count_if(cloud.z, [](float z) { return z < 0; });
+  EXPECT_NEAR(hole[all_beams] / (100 * static_cast<float>(below)), 1, 0.1) << "and of its rim";
+  EXPECT_NEAR(hole[all_scatter], 0.01, 0.004);
+  EXPECT_NEAR(hole[ground_scatter], 0.05, 0.002);
 }
 
 TEST(Surroundings, KnowsTheGrassAround) {

@@ -16,6 +16,7 @@ namespace {
 TrainingSettings short_training(std::size_t restarts) {
   TrainingSettings settings;
   settings.hidden = 2;
+  settings.inputs = kPaperFeatures;  // all that the stand-ins have
   settings.seed = 1;
   settings.restarts = restarts;
   settings.levenberg_marquardt.max_iterations = 12;
