@@ -111,10 +111,10 @@ void Surroundings::measure(Cluster& cluster, std::span<const std::uint32_t> memb
       if (distance > 0) {
         beams += solidity.all_ended(cell);
         scatter += solidity.all_scatter(cell);
-      }
-      if (distance > 0 && surface.is_ground(cell)) {
-        ++level_cells;
-        uneven += surface.roughness(cell);
+        if (surface.is_ground(cell)) {
+          ++level_cells;
+          uneven += surface.roughness(cell);
+        }
       }
       if (distance > kAround) continue;
       if (distance <= 0) {

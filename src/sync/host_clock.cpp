@@ -34,9 +34,9 @@ std::int64_t HostClock::to_monotonic(std::int64_t real_ns, const ClockReading& n
 }
 
 std::int64_t HostClock::to_first_real(std::int64_t real_ns, const ClockReading& now) {
-  look(now);
+  const std::int64_t monotonic_ns = to_monotonic(real_ns, now);
   // As long as nobody has set the clock a stamp stays as it is, however long it waited.
-  return steps_ == 0 ? real_ns : to_monotonic(real_ns, now) + first_ns_;
+  return steps_ == 0 ? real_ns : monotonic_ns + first_ns_;
 }
 
 std::int64_t HostClock::to_real(std::int64_t monotonic_ns, const ClockReading& now) {

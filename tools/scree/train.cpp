@@ -133,10 +133,10 @@ void set_inputs(TrainOptions& options) {
     return;
   }
   if (options.profile == Profile::map) {
-    for (const Feature length : {mean_height, max_height, min_height, box_length, box_width,
+    for (const Feature skewed : {mean_height, max_height, min_height, box_length, box_width,
                                  cell_points, cell_spread, roughness, edge_height, range_scatter,
                                  over_loose, least_scatter, all_scatter, ground_scatter}) {
-      learn.forms[length] = InputForm::root;
+      learn.forms[skewed] = InputForm::root;
     }
   }
   for (const Feature count : {acute_count, obtuse_count, beam_count, solid_core, all_beams}) {

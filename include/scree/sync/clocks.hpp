@@ -1,20 +1,20 @@
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 
+#include "scree/core/nanoseconds.hpp"
 #include "scree/sync/host_clock.hpp"
 
 namespace scree {
 
 /// The monotonic clock, on which everything runs: never set.
 inline std::int64_t steady_ns() {
-  return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
+  return read_clock(CLOCK_MONOTONIC);
 }
 
 /// Nanoseconds since the UNIX epoch, as the kernel stamps datagrams: for the edges only.
 inline std::int64_t wall_ns() {
-  return std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
+  return read_clock(CLOCK_REALTIME);
 }
 
 /// Both, as close together as a thread that may be interrupted can read them.
