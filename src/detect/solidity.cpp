@@ -39,8 +39,8 @@ void Solidity::build(PointView cloud, std::span<const BeamCount> beams,
     all_ended_[cell] += beams[i].ended;
     all_scatter_[cell] += beams[i].scatter;
     if (height < lowest) continue;
-    ended_[cell] += static_cast<float>(beams[i].ended);
-    passed_[cell] += static_cast<float>(beams[i].passed);
+    ended_[cell] += beams[i].ended;
+    passed_[cell] += beams[i].passed;
     scatter_[cell] += beams[i].scatter;
     if (is_solid(beams[i])) solid_[cell] += beams[i].ended;
     highest_[cell] = std::max(highest_[cell], height);
