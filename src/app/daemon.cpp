@@ -89,7 +89,7 @@ public:
   }
 
   static std::size_t max_obstacles(const Settings& settings) {
-    return static_cast<std::size_t>(settings.max_obstacles());
+    return static_cast<std::size_t>(settings.memory.obstacles);
   }
 
 private:

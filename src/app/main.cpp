@@ -47,7 +47,7 @@ scree::Process process_of(scree::Pipeline& pipeline,
     const scree::StageCounts counts = pipeline.counts();
     all.points += counts.dropped;
     all.points_refused += counts.refused;
-    all.edge_points += counts.edges_dropped;
+    all.edge_points += counts.candidates_dropped;
     all.obstacles += counts.obstacles_dropped;
     all.map_points = pipeline.mapper().map().dropped();
     all.tracks = pipeline.tracker().dropped();

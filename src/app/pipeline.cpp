@@ -1,5 +1,7 @@
 #include "scree/app/pipeline.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <utility>
 
 namespace scree {
@@ -10,17 +12,28 @@ Result<Network> load_network(const std::string& name, const std::filesystem::pat
   return Network::load(*file);
 }
 
-Result<Detector> make_detector(const DetectSettings& settings,
-                               const std::filesystem::path& config_file) {
+Result<Network> load_network(const DetectSettings& settings,
+                             const std::filesystem::path& config_file) {
   auto network = load_network(settings.network, config_file);
+  const std::size_t features = settings.method == Method::edges ? kPaperFeatures : kFeatures;
+  if (network && network->inputs() > features) {
+    return fail(fmt::format("{} takes {} features, and method = \"{}\" has {}", settings.network,
+                            network->inputs(), name_of(settings.method), features));
+  }
+  return network;
+}
+
+Result<Detector> make_detector(const DetectSettings& settings, const DetectorLimits& limits,
+                               const std::filesystem::path& config_file) {
+  auto network = load_network(settings, config_file);
   if (!network) return tl::make_unexpected(network.error());
-  return Detector(settings, *std::move(network));
+  return Detector(settings, limits, *std::move(network));
 }
 
 Result<Networks> load_networks(const Settings& settings, const std::filesystem::path& config_file) {
-  auto map = load_network(settings.detect_map.network, config_file);
+  auto map = load_network(settings.detect_map, config_file);
   if (!map) return tl::make_unexpected(map.error());
-  auto sweep = load_network(settings.detect_sweep.network, config_file);
+  auto sweep = load_network(settings.detect_sweep, config_file);
   if (!sweep) return tl::make_unexpected(sweep.error());
   if (settings.track.network.empty()) return Networks{*map, *sweep, std::nullopt};
   auto judge = load_network(settings.track.network, config_file);
@@ -32,24 +45,21 @@ Result<Pipeline> Pipeline::make(const Settings& settings,
                                 const std::filesystem::path& config_file) {
   auto networks = load_networks(settings, config_file);
   if (!networks) return tl::make_unexpected(networks.error());
-  return Pipeline(settings, Detector(settings.detect_map, networks->map),
-                  Detector(settings.detect_sweep, networks->sweep), networks->judge);
+  return Pipeline(settings, *networks);
 }
 
-Pipeline::Pipeline(const Settings& settings, Detector map_detector, Detector sweep_detector,
-                   std::optional<Network> judge)
+Pipeline::Pipeline(const Settings& settings, const Networks& networks)
     : lidar_(settings.lidar),
       sensors_(std::make_unique<SyncBuffer>()),
       mapper_(std::make_unique<Mapper>(settings)),
-      map_detector_(std::move(map_detector)),
-      sweep_detector_(std::move(sweep_detector)),
-      tracker_(settings.track, static_cast<std::size_t>(settings.detect_map.max_obstacles),
-               std::move(judge)),
+      map_detector_(settings.detect_map, settings.memory.for_map(), networks.map),
+      sweep_detector_(settings.detect_sweep, settings.memory.for_sweep(), networks.sweep),
+      tracker_(settings.track, static_cast<std::size_t>(settings.memory.obstacles), networks.judge),
       sweep_tracker_(TrackingSettings::for_sweep(),
-                     static_cast<std::size_t>(settings.detect_sweep.max_obstacles)),
-      sweep_(static_cast<std::size_t>(settings.detect_sweep.max_points)),
-      found_(static_cast<std::size_t>(settings.max_obstacles())),
-      list_(static_cast<std::size_t>(settings.max_obstacles())) {}
+                     static_cast<std::size_t>(settings.memory.obstacles)),
+      sweep_(static_cast<std::size_t>(settings.memory.sweep_points)),
+      found_(static_cast<std::size_t>(settings.memory.obstacles)),
+      list_(static_cast<std::size_t>(settings.memory.obstacles)) {}
 
 bool Pipeline::is_covered(std::int64_t end_ns) {
   sensors_->gather();

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <fstream>
-#include <initializer_list>
+#include <map>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -13,6 +13,7 @@
 
 #include "scree/config/keys.hpp"
 #include "scree/config/near_names.hpp"
+#include "scree/config/removed_keys.hpp"
 
 namespace scree {
 namespace {
@@ -26,10 +27,15 @@ public:
   template <class T>
   void operator()(const Key& key, T& value) {
     const std::string name = full_name(key);
+    if (!key.is_live) {
+      unread_.emplace(name, key.only_with);
+      return;
+    }
     known_.insert(name);
     const auto node = root_.at_path(name);
     if (!node || error_) return;
-    configuration_.sources[name] = {origin_, node.node()->source().begin.line};
+    configuration_.sources[name] = {
+        .file = origin_, .line = node.node()->source().begin.line, .method = key.method};
     read(key, *node.node(), value);
   }
 
@@ -45,7 +51,7 @@ public:
       } else if (is_table) {
         refuse(node, name, "is a table");
       } else if (!known_.contains(name)) {
-        refuse(node, name, "is not a setting; the nearest is " + nearest(name, node.is_table()));
+        refuse(node, name, why_not(name, node.is_table()));
       }
     }
   }
@@ -53,6 +59,14 @@ public:
   const std::optional<Error>& error() const { return error_; }
 
 private:
+  std::string why_not(const std::string& name, bool is_table) const {
+    if (const auto unread = unread_.find(name); unread != unread_.end()) {
+      return fmt::format("is read only with {}", unread->second);
+    }
+    if (const auto replacement = replacement_of(name)) return "is gone: " + *replacement;
+    return "is not a setting; the nearest is " + nearest(name, is_table);
+  }
+
   std::string nearest(std::string_view wanted, bool is_table) const {
     std::vector<std::string_view> names;
     for (const std::string& name : known_) {
@@ -136,6 +150,7 @@ private:
   std::string origin_;
   Configuration& configuration_;
   std::set<std::string> known_;
+  std::map<std::string, std::string_view> unread_;  // keys, with the condition that they lack
   std::optional<Error> error_;
 };
 
@@ -147,19 +162,15 @@ struct Contradiction {
 
 std::optional<Contradiction> contradiction(const DetectSettings& detect, std::string_view table) {
   const auto of = [&](std::string_view key) { return fmt::format("{}.{}", table, key); };
-  const auto both = [&](std::string_view first, std::string_view relation,
-                        std::string_view second) {
-    return Contradiction{{of(first), of(second)},
-                         fmt::format("{} {} {}", of(first), relation, of(second))};
-  };
-  if (detect.ground_inner >= detect.ground_outer) {
-    return both("ground_inner", "must be below", "ground_outer");
+  constexpr double kLeastLeaf = 0.001;  // metres
+  if (detect.leaf_size > 0 && detect.leaf_size < kLeastLeaf) {
+    return Contradiction{{of("leaf_size")},
+                         fmt::format("{} must be 0 or at least {}", of("leaf_size"), kLeastLeaf)};
   }
-  if (detect.max_edge_points > detect.max_points) {
-    return both("max_edge_points", "must not be above", "max_points");
-  }
-  if (detect.cluster_method == ClusterMethod::regions && !detect.uses_surface()) {
-    return both("cluster_method", "= \"regions\" needs the value \"surface\" of", "ground");
+  if (detect.method == Method::edges && detect.edges.ground_inner >= detect.edges.ground_outer) {
+    return Contradiction{
+        {of("ground_inner"), of("ground_outer")},
+        fmt::format("{} must be below {}", of("ground_inner"), of("ground_outer"))};
   }
   return std::nullopt;
 }
@@ -201,7 +212,7 @@ std::optional<Error> read_over(std::string_view toml, const std::string& origin,
   try {
     const toml::table root = toml::parse(toml, origin);
     Reader reader(root, origin, configuration);
-    for_each_key(configuration.settings, reader);
+    for_every_key(configuration.settings, reader);
     reader.refuse_unknown(root, "");
     return reader.error();
   } catch (const toml::parse_error& error) {
@@ -217,6 +228,22 @@ std::optional<Error> read_over(const std::filesystem::path& file, Configuration&
   std::ostringstream text;
   text << stream.rdbuf();
   return read_over(text.str(), file.string(), configuration);
+}
+
+/// A key that one file sets and another one's choice of a method leaves unread.
+std::optional<Error> unread_key(const Configuration& configuration) {
+  std::map<std::string, std::string_view> live;  // with their methods
+  for_each_key(configuration.settings,
+               [&](const Key& key, const auto&) { live.emplace(full_name(key), key.method); });
+  for (const auto& [name, source] : configuration.sources) {
+    if (source.is_default()) continue;
+    const auto key = live.find(name);
+    if (key != live.end() && key->second == source.method) continue;
+    return Error{fmt::format("{}: {} was set for {}, and another file sets another one",
+                             source.text(), name,
+                             source.method.empty() ? "another method" : source.method)};
+  }
+  return std::nullopt;
 }
 
 /// What only all files together can have wrong.
@@ -236,9 +263,28 @@ std::optional<Error> mistake_of(const Configuration& configuration, const std::s
                  ": encoder.dbc needs encoder.scale beside it, metres (or m/s) per unit of the "
                  "signal: 0.277778 for km/h"};
   }
+  if (auto unread = unread_key(configuration)) return unread;
   const auto found = contradiction(configuration.settings);
   if (!found) return std::nullopt;
   return Error{at(found->keys) + ": " + found->reason};
+}
+
+/// Reads the profiles that lie beside the configuration file, else those shipped. What they say is
+/// a default where it is that of the program.
+std::optional<Error> read_profiles(const std::filesystem::path& config_file,
+                                   Configuration& configuration) {
+  for (const std::string_view name : kProfiles) {
+    const auto profile = find_file(std::string(name), config_file);
+    if (!profile) continue;
+    if (auto mistake = read_over(*profile, configuration)) return mistake;
+  }
+  const auto defaults = toml_values(Settings()), values = toml_values(configuration.settings);
+  for (auto& [name, source] : configuration.sources) {
+    const auto by_default = defaults.find(name), value = values.find(name);
+    source.says_default = by_default != defaults.end() && value != values.end() &&
+                          by_default->second == value->second;
+  }
+  return std::nullopt;
 }
 
 std::vector<std::filesystem::path> drop_ins(std::filesystem::path file) {
@@ -268,7 +314,7 @@ std::optional<Error> missing_file(const Configuration& configuration,
 }  // namespace
 
 std::string Source::text() const {
-  return is_default() ? "default" : fmt::format("{}:{}", file, line);
+  return file.empty() ? "default" : fmt::format("{}:{}", file, line);
 }
 
 Source Configuration::source_of(std::string_view name) const {
@@ -286,7 +332,8 @@ std::vector<NamedFile> named_files(const Settings& settings) {
 
 Result<Configuration> read_configuration(const std::filesystem::path& file) {
   Configuration configuration;
-  auto mistake = read_over(file, configuration);
+  auto mistake = read_profiles(file, configuration);
+  if (!mistake) mistake = read_over(file, configuration);
   for (const std::filesystem::path& drop_in : drop_ins(file)) {
     if (!mistake) mistake = read_over(drop_in, configuration);
   }

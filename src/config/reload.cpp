@@ -1,5 +1,6 @@
 #include "scree/config/reload.hpp"
 
+#include "scree/config/configuration.hpp"
 #include "scree/config/keys.hpp"
 
 namespace scree {
@@ -14,17 +15,18 @@ bool is_reloadable(const Key& key) {
 
 Reload reload(const Settings& running, const Settings& wanted) {
   Reload result{running, {}, {}};
-  std::vector<const void*> wanted_values;
-  for_each_key(wanted, [&](const Key&, const auto& value) { wanted_values.push_back(&value); });
-  std::size_t next = 0;
-  for_each_key(result.settings, [&]<class Value>(const Key& key, Value& value) {
-    // The keys come in the same order, so this is the same key's.
-    const Value& wanted_value = *static_cast<const Value*>(wanted_values[next++]);
-    if (value == wanted_value) return;
-    const bool can_change = is_reloadable(key);
-    (can_change ? result.applied : result.refused).push_back(full_name(key));
-    if (can_change) value = wanted_value;
+  const auto values_now = toml_values(running);
+  auto values = toml_values(wanted);
+  for_each_key(wanted, [&](const Key& key, const auto&) {
+    const std::string name = full_name(key);
+    const auto now = values_now.find(name);
+    if (now != values_now.end() && now->second == values[name]) return;
+    (is_reloadable(key) ? result.applied : result.refused).push_back(name);
   });
+  result.settings.stop = wanted.stop;
+  result.settings.track = wanted.track;
+  result.settings.track.network = running.track.network;
+  result.settings.map.wait = wanted.map.wait;
   return result;
 }
 

@@ -6,51 +6,46 @@
 
 namespace scree {
 
-// A ring of a single sweep is dense and the next ring far off: the kernel reaches from ring to
-// ring, weighs the nearest points most, and what is steep is too little to be thinned further.
+DetectSettings DetectSettings::for_paper() {
+  DetectSettings detect;
+  detect.method = Method::edges;
+  detect.network = "network_paper.txt";
+  return detect;
+}
+
 DetectSettings DetectSettings::for_cloud() {
   DetectSettings detect;
-  detect.ground = GroundReference::surface;
-  detect.candidates = Candidates::bodies;
-  detect.suppression = false;
-  detect.cluster_method = ClusterMethod::euclidean;
-  detect.cluster_tolerance = 0.20;
-  detect.min_cluster_size = 4;
   detect.network = "network_cloud.txt";
   return detect;
 }
 
 DetectSettings DetectSettings::for_map() {
-  DetectSettings detect = for_cloud();
-  detect.max_points = MapSettings().max_voxels;
-  detect.max_edge_points = 1 << 17;
-  detect.max_obstacles = 512;
-  detect.voxel_grid = false;
-  detect.ground_trend = 2;
-  detect.kernel_shared = 0.03;
-  detect.cluster_method = ClusterMethod::regions;
-  detect.cluster_tolerance = 0.30;
+  DetectSettings detect;
+  detect.leaf_size = 0;  // the map's points are voxels
+  detect.surface.ground_trend = 2;
+  detect.surface.kernel_shared = 0.03;
+  detect.surface.clustering = SurfaceClustering::regions;
+  detect.surface.cluster_tolerance = 0.30;
   detect.network = "network_map.txt";
   detect.min_confidence = 0.05;
   return detect;
 }
 
+// A ring of a single sweep is dense and the next ring far off: the kernel reaches from ring to
+// ring, weighs the nearest points most, and what is steep is too little to be thinned further.
 DetectSettings DetectSettings::for_sweep() {
-  DetectSettings detect;
-  detect.max_points = 1 << 17;
-  detect.max_edge_points = 1 << 16;
+  DetectSettings detect = for_paper();
   detect.leaf_size = 0.05;
-  detect.kernel_spacing = 0.20;
-  detect.kernel_radius = 0.60;
-  detect.kernel_bandwidth = 0.20;
-  detect.edge_threshold = 0.25;
-  detect.suppression = false;
-  detect.voxel_size = 0.10;
-  detect.seed_distance = 0.30;
-  detect.min_block_points = 3;
-  detect.cluster_tolerance = 0.50;
-  detect.min_cluster_size = 2;
-  detect.ground_outer = 1.5;
+  EdgeSettings& edges = detect.edges;
+  edges.kernel = {.spacing = 0.20, .radius = 0.60, .bandwidth = 0.20, .neighbours = 1};
+  edges.threshold = 0.25;
+  edges.suppression = false;
+  edges.voxel_size = 0.10;
+  edges.seed_distance = 0.30;
+  edges.min_block_points = 3;
+  edges.cluster_tolerance = 0.50;
+  edges.min_cluster_size = 2;
+  edges.ground_outer = 1.5;
   detect.network = "network_sweep.txt";
   return detect;
 }

@@ -45,17 +45,52 @@ std::string accepted_values(const Key& key, const T&) {
   return accepted.empty() ? accepted : "  (" + accepted + ")";
 }
 
+std::string_view head_of(std::string_view file) {
+  if (file == "cloud.toml") {
+    return "# Profile for reconstructed clouds: scree detect CLOUD.pcd\n";
+  }
+  if (file == "map.toml") {
+    return "# Profile for driving: the map that grows, detection in it, and tracks.\n";
+  }
+  if (file == "sweep.toml") {
+    return "# Profile for single sweeps, as long as neither IMU nor encoder has said anything.\n";
+  }
+  return {};
+}
+
+bool is_shown(const Key& key, const Source& source, Shown shown) {
+  if (shown == Shown::all || !source.is_default()) return true;
+  return shown == Shown::owners && file_of(key) == kOwnersFile;
+}
+
 }  // namespace
 
-std::string default_settings_toml() {
-  std::string text = fmt::format(
-      "# Scree's configuration: every key with its default. A key left out keeps its default.\n"
-      "# Drop-ins, scree.d/*.toml beside this file, go over it in the order of their names.\n"
-      "# `systemctl reload screed` takes over {}; the other keys need a restart.\n",
-      kReloadableKeys);
+std::string_view file_of(const Key& key) {
+  if (key.table == "detect.cloud") return "cloud.toml";
+  if (key.table == "detect.sweep") return "sweep.toml";
+  const bool is_owners =
+      (key.table == "map" && key.name == "wait") || (key.table == "track" && key.name == "reach");
+  const bool is_driving =
+      key.table == "detect.map" || ((key.table == "map" || key.table == "track") && !is_owners);
+  return is_driving ? "map.toml" : kOwnersFile;
+}
+
+std::string default_toml(std::string_view file) {
+  std::string text(head_of(file));
+  if (file == kOwnersFile) {
+    text = fmt::format(
+        "# What a robot's owner sets. A key left out keeps its default.\n"
+        "# How obstacles are found is tuned in the profiles cloud.toml, map.toml and sweep.toml:\n"
+        "# /usr/share/scree has them. A copy beside this file is read instead, and each of their\n"
+        "# keys can stand here too. `scree config --all` shows every key and where it is set.\n"
+        "# Drop-ins, scree.d/*.toml beside this file, go over it in the order of their names.\n"
+        "# `systemctl reload screed` takes over {}; the other keys need a restart.\n",
+        kReloadableKeys);
+  }
   std::string_view table;
   const Settings defaults;
   for_each_key(defaults, [&](const Key& key, const auto& value) {
+    if (file_of(key) != file) return;
     if (key.table != table) text += fmt::format("\n[{}]\n", key.table);
     table = key.table;
     text += fmt::format("# {}{}\n{} = {}\n", key.meaning, accepted_values(key, value), key.name,
@@ -64,13 +99,13 @@ std::string default_settings_toml() {
   return text;
 }
 
-std::string effective_toml(const Configuration& configuration, bool only_set) {
+std::string effective_toml(const Configuration& configuration, Shown shown) {
   constexpr std::size_t kColumn = 40;  // of the remarks
   std::string text;
   std::string_view table;
   for_each_key(configuration.settings, [&](const Key& key, const auto& value) {
     const Source source = configuration.source_of(full_name(key));
-    if (only_set && source.is_default()) return;
+    if (!is_shown(key, source, shown)) return;
     if (key.table != table) {
       text += fmt::format("{}[{}]\n", text.empty() ? "" : "\n", key.table);
       table = key.table;
@@ -79,6 +114,14 @@ std::string effective_toml(const Configuration& configuration, bool only_set) {
                         kColumn, source.text());
   });
   return text;
+}
+
+std::map<std::string, std::string, std::less<>> toml_values(const Settings& settings) {
+  std::map<std::string, std::string, std::less<>> values;
+  for_each_key(settings, [&](const Key& key, const auto& value) {
+    values.emplace(full_name(key), toml_value(value));
+  });
+  return values;
 }
 
 }  // namespace scree

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "scree/detect/label.hpp"
 #include "scree/detect/neighbours.hpp"
-#include "scree/detect/supervoxels.hpp"
 #include "scree/detect/union_find.hpp"
 
 namespace scree {
@@ -17,13 +17,14 @@ BodyRegions::BodyRegions(std::size_t max_points, std::size_t max_cells)
       order_(max_cells),
       parent_(max_cells),
       number_(max_cells),
-      labels_(max_points) {}
+      labels_(max_points),
+      sizes_(max_points) {}
 
 void BodyRegions::label(const EdgePoints& bodies, const GroundSurface& surface,
                         const Solidity& solidity, const BodyRegionSettings& settings) {
   columns_ = surface.columns();
   labels_.assign(bodies.size(), kNoLabel);
-  count_ = 0;
+  sizes_.clear();
   const auto steps = static_cast<int>(std::lround(settings.tolerance / 2 / surface.cell_size()));
   for (const Side side : {Side::above, Side::below}) {
     mark(bodies, side, surface, solidity);
@@ -109,8 +110,12 @@ void BodyRegions::number(const EdgePoints& bodies, Side side, const GroundSurfac
     if ((bodies.height[i] > 0) != (side == Side::above)) continue;
     const std::size_t cell = surface.cell_at(bodies.points.x[i], bodies.points.y[i]);
     std::uint32_t& number = number_[root_of(parent_, static_cast<std::uint32_t>(cell))];
-    if (number == kNoLabel) number = static_cast<std::uint32_t>(count_++);
+    if (number == kNoLabel) {
+      number = static_cast<std::uint32_t>(sizes_.size());
+      sizes_.push_back(0);
+    }
     labels_[i] = number;
+    ++sizes_[number];
   }
 }
 

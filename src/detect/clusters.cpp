@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "scree/detect/supervoxels.hpp"
+#include "scree/detect/label.hpp"
 
 namespace scree {
 

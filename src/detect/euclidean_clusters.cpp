@@ -3,13 +3,17 @@
 #include <algorithm>
 #include <limits>
 
-#include "scree/detect/supervoxels.hpp"
+#include "scree/detect/label.hpp"
 #include "scree/detect/union_find.hpp"
 
 namespace scree {
 
 EuclideanClusters::EuclideanClusters(std::size_t max_points)
-    : cells_(max_points), parent_(max_points), labels_(max_points), label_of_root_(max_points) {}
+    : cells_(max_points),
+      parent_(max_points),
+      labels_(max_points),
+      sizes_(max_points),
+      label_of_root_(max_points) {}
 
 void EuclideanClusters::join_cells(PointView points, float square, std::size_t a, std::size_t b) {
   const std::uint32_t root_a = root_of(parent_, static_cast<std::uint32_t>(a));
@@ -54,11 +58,15 @@ void EuclideanClusters::cluster(PointView points, float tolerance) {
       labels_[cells_.source(i)] = root_of(parent_, cell);
   }
   label_of_root_.assign(cells, kNoLabel);
-  count_ = 0;
+  sizes_.clear();
   for (std::uint32_t& label : labels_) {
     std::uint32_t& number = label_of_root_[label];
-    if (number == kNoLabel) number = static_cast<std::uint32_t>(count_++);
+    if (number == kNoLabel) {
+      number = static_cast<std::uint32_t>(sizes_.size());
+      sizes_.push_back(0);
+    }
     label = number;
+    ++sizes_[label];
   }
 }
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "scree/detect/label.hpp"
 #include "scree/detect/neighbours.hpp"
 #include "scree/detect/quantile.hpp"
-#include "scree/detect/supervoxels.hpp"
 
 namespace scree {
 namespace {

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "scree/detect/label.hpp"
+
 namespace scree {
 
 Supervoxels::Supervoxels(std::size_t max_points)

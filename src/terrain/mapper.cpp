@@ -21,11 +21,11 @@ Mapper::Mapper(const Settings& settings)
       dead_reckoning_(settings.imu.mount().rotation),
       slip_watch_(settings.imu.mount().rotation, settings.imu.translation,
                   settings.encoder.max_speed),
-      sweep_(static_cast<std::size_t>(settings.map.max_points)),
+      sweep_(static_cast<std::size_t>(settings.memory.sweep_points)),
       levelling_(settings.imu.translation),
-      registration_(static_cast<std::size_t>(settings.map.max_points)),
+      registration_(static_cast<std::size_t>(settings.memory.sweep_points)),
       surfels_(kSurfel),
-      map_(settings.map) {}
+      map_(settings.map, static_cast<std::size_t>(settings.memory.map_voxels)) {}
 
 void Mapper::add(const Sweep& sweep, const SyncBuffer& sensors, StageTimer& timer) {
   const std::int64_t begin_ns = sweep.end_ns + (sweep.points.empty() ? 0 : sweep.time_ns[0]);

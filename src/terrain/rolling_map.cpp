@@ -18,10 +18,10 @@ constexpr std::uint16_t kEvery = 4;
 
 }  // namespace
 
-RollingMap::RollingMap(const MapSettings& settings)
+RollingMap::RollingMap(const MapSettings& settings, std::size_t max_voxels)
     : settings_(settings),
       inverse_(static_cast<float>(1 / settings.voxel)),
-      voxels_(static_cast<std::size_t>(settings.max_voxels)),
+      voxels_(max_voxels),
       index_(std::bit_ceil(2 * voxels_.capacity())),
       mask_(index_.capacity() - 1),
       in_block_(Blocks::kCells),

@@ -16,11 +16,14 @@ const DetectSettings& settings() {
   return defaults;
 }
 
+DetectorLimits limits() {
+  return MemorySettings().for_cloud();
+}
 std::size_t max_points() {
-  return static_cast<std::size_t>(settings().max_points);
+  return limits().points;
 }
 std::size_t max_edges() {
-  return static_cast<std::size_t>(settings().max_edge_points);
+  return limits().candidates;
 }
 
 const PointCloud& cloud() {
@@ -29,9 +32,13 @@ const PointCloud& cloud() {
   return made;
 }
 
-/// The detector after one call: each stage's input stands in it.
-const Detector& ran() {
-  static Detector detector(settings(), Network());
+const EdgeSettings& edge_settings() {
+  return settings().edges;
+}
+
+/// The paper's detector after one call: each stage's input stands in it.
+const Detector& ran_detector() {
+  static Detector detector(settings(), limits(), Network());
   static const bool once = [] {
     FixedVector<Obstacle> obstacles(1024);
     detector.detect(cloud(), obstacles);
@@ -40,23 +47,23 @@ const Detector& ran() {
   static_cast<void>(once);
   return detector;
 }
+const EdgeMethod& ran() {
+  return *ran_detector().edge_method();
+}
 
 ElevationGradient gradient() {
-  const auto& detect = settings();
-  return {static_cast<float>(detect.kernel_spacing), static_cast<float>(detect.kernel_radius),
-          static_cast<float>(detect.kernel_bandwidth * detect.kernel_radius),
-          detect.kernel_neighbours};
+  return gradient_of(edge_settings().kernel);
 }
 
 void whole_chain(benchmark::State& state, const DetectSettings& method) {
-  Detector detector(method, Network());
+  Detector detector(method, limits(), Network());
   FixedVector<Obstacle> obstacles(1024);
   const PointCloud& input = cloud();
   for (auto _ : state) detector.detect(input, obstacles);
   state.counters["points"] = static_cast<double>(input.size());
 }
 BENCHMARK_CAPTURE(whole_chain, paper, DetectSettings::for_paper())->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(whole_chain, bodies, DetectSettings::for_cloud())->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(whole_chain, surface, DetectSettings::for_cloud())->Unit(benchmark::kMillisecond);
 
 void voxel_grid(benchmark::State& state) {
   VoxelGrid grid(max_points());
@@ -69,13 +76,13 @@ BENCHMARK(voxel_grid)->Unit(benchmark::kMillisecond);
 
 void plane_cells(benchmark::State& state) {
   PlaneCells cells(max_points());
-  const PointCloud& thinned = ran().thinned();
+  const PointCloud& thinned = ran_detector().points();
   for (auto _ : state) cells.build(thinned, gradient().reach());
 }
 BENCHMARK(plane_cells)->Unit(benchmark::kMillisecond);
 
 void elevation_gradient(benchmark::State& state) {
-  const PlaneCells& cells = ran().cells();
+  const PlaneCells& cells = ran().sloped().cells;
   FixedVector<float> slope_x(max_points()), slope_y(max_points());
   slope_x.resize(cells.size());
   slope_y.resize(cells.size());
@@ -84,53 +91,51 @@ void elevation_gradient(benchmark::State& state) {
 BENCHMARK(elevation_gradient)->Unit(benchmark::kMillisecond);
 
 void suppression(benchmark::State& state) {
-  const Suppression stage{static_cast<float>(settings().suppression_distance),
-                          static_cast<float>(settings().suppression_radius)};
+  const Suppression stage{static_cast<float>(edge_settings().suppression_distance),
+                          static_cast<float>(edge_settings().suppression_radius)};
   PlaneCells cells(max_edges());
   EdgePoints kept(max_edges());
-  const EdgePoints& edges = ran().edges();
+  const EdgePoints& edges = ran().candidates();
   for (auto _ : state) stage.suppress(edges, cells, kept);
 }
 BENCHMARK(suppression)->Unit(benchmark::kMillisecond);
 
 void supervoxels(benchmark::State& state) {
   Supervoxels stage(max_edges());
-  const EdgePoints& kept = ran().kept();
+  const EdgePoints& kept = ran().result().points;
   for (auto _ : state) {
-    stage.segment(kept, {.voxel_size = static_cast<float>(settings().voxel_size),
-                         .seed_distance = static_cast<float>(settings().seed_distance),
-                         .reflectivity_weight = static_cast<float>(settings().reflectivity_weight),
-                         .spatial_weight = static_cast<float>(settings().spatial_weight),
-                         .normal_weight = static_cast<float>(settings().normal_weight)});
+    stage.segment(kept, supervoxels_of(edge_settings()));
   }
 }
 BENCHMARK(supervoxels)->Unit(benchmark::kMillisecond);
 
-void euclidean_baseline(benchmark::State& state) {
-  EuclideanClusters stage(max_edges());
-  const EdgePoints& kept = ran().kept();
+template <class Stage>
+void euclidean_clusters(benchmark::State& state) {
+  Stage stage(max_edges());
+  const EdgePoints& kept = ran().result().points;
   for (auto _ : state) stage.cluster(kept.points, 0.15F);
 }
-BENCHMARK(euclidean_baseline)->Unit(benchmark::kMillisecond);
+BENCHMARK(euclidean_clusters<EuclideanClusters>)->Unit(benchmark::kMillisecond);
+BENCHMARK(euclidean_clusters<KdTreeClusters>)->Unit(benchmark::kMillisecond);
 
 void ground_surface(benchmark::State& state) {
-  const DetectSettings ours = DetectSettings::for_cloud();
-  GroundSurface surface(max_points(), static_cast<std::size_t>(ours.max_ground_cells));
-  const PointCloud& points = ran().cells().points();
-  for (auto _ : state) surface.build(points, surface_settings(ours));
+  const SurfaceSettings ours = DetectSettings::for_cloud().surface;
+  GroundSurface surface(max_points(), limits().ground_cells);
+  const PointCloud& points = ran().sloped().cells.points();
+  for (auto _ : state) surface.build(points, ground_surface_of(ours));
 }
 BENCHMARK(ground_surface)->Unit(benchmark::kMillisecond);
 
 void features_and_ground(benchmark::State& state) {
-  const Detector& detector = ran();
-  GroundHeight ground(static_cast<float>(settings().ground_inner),
-                      static_cast<float>(settings().ground_outer), max_points());
-  const std::vector<std::uint8_t> is_edge(detector.cells().size(), 0);
-  const Clusters& clusters = detector.clusters();
+  const PlaneCells& cells = ran().sloped().cells;
+  const ClusteredPoints found = ran().result();
+  GroundHeight ground(static_cast<float>(edge_settings().ground_inner),
+                      static_cast<float>(edge_settings().ground_outer), max_points());
+  const std::vector<std::uint8_t> is_edge(cells.size(), 0);
   for (auto _ : state) {
-    for (const Cluster& cluster : clusters.all()) {
-      benchmark::DoNotOptimize(ground.around(cluster.box, detector.cells(), is_edge, 0));
-      benchmark::DoNotOptimize(measure(detector.kept(), clusters.members(cluster)));
+    for (const Cluster& cluster : found.clusters.all()) {
+      benchmark::DoNotOptimize(ground.around(cluster.box, cells, is_edge, 0));
+      benchmark::DoNotOptimize(measure(found.points, found.clusters.members(cluster)));
     }
   }
 }

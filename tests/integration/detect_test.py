@@ -229,9 +229,9 @@ class DetectTest(unittest.TestCase):
         with open(os.path.join(capture, "can.log"), "w") as log:
             log.writelines(frames)
         with open(os.path.join(capture, "scree.toml"), "a") as config:
-            config.write("\n[map]\nmax_voxels = 1024\n")
+            config.write("\n[memory]\nmap_voxels = 1024\n")
         said = self.scree("detect", capture, "--out", self.path("l")).stderr
-        self.assertRegex(said, r"map: \d+ points found no room: raise map.max_voxels")
+        self.assertRegex(said, r"map: \d+ points found no room: raise memory.map_voxels")
         self.assertRegex(said, r"map: \d+ sweeps during which the wheel slipped")
 
     def draw(self, source, lists):

@@ -11,13 +11,14 @@ namespace {
 
 struct ConfigOptions {
   std::string file = "/etc/scree/scree.toml";
-  bool defaults = false, only_set = false;
+  bool defaults = false, all = false, only_set = false;
 };
 
 void print_config(const ConfigOptions& options) {
   const Configuration configuration =
       options.defaults ? Configuration() : value_or_fail(read_configuration(options.file));
-  fmt::print("{}", effective_toml(configuration, options.only_set));
+  const Shown shown = options.all ? Shown::all : options.only_set ? Shown::set : Shown::owners;
+  fmt::print("{}", effective_toml(configuration, shown));
 }
 
 }  // namespace
@@ -30,7 +31,10 @@ void add_config(CLI::App& app) {
       config.add_option("--config", options->file, "configuration; drop-ins lie in its folder *.d")
           ->type_name("FILE")
           ->capture_default_str();
-  config.add_flag("--set", options->only_set, "only what a file sets");
+  CLI::Option* const all = config.add_flag(
+      "--all", options->all,
+      "every key; without it those that a robot's owner sets, and what a file sets");
+  config.add_flag("--set", options->only_set, "only what a file sets")->excludes(all);
   config.add_flag("--defaults", options->defaults, "without any file")->excludes(file);
   config.callback([options] { print_config(*options); });
 }

@@ -54,25 +54,25 @@ private:
 };
 
 void warn_of_losses(const StageCounts& counts, std::string_view what) {
-  warn(what, counts.dropped, "points beyond max_points were dropped");
+  warn(what, counts.dropped, "points found no room: raise [memory]");
   warn(what, counts.refused, "points are not finite or too far out, and were left out");
-  warn(what, counts.edges_dropped, "edge points beyond max_edge_points were dropped");
-  warn(what, counts.obstacles_dropped, "obstacles beyond max_obstacles were dropped");
+  warn(what, counts.candidates_dropped, "points of obstacles found no room: raise [memory]");
+  warn(what, counts.obstacles_dropped, "obstacles found no room: raise memory.obstacles");
 }
 
 void detect_in_cloud(const DetectOptions& options) {
-  const Settings all = capture_settings(options.input, options.config);
+  Settings settings = capture_settings(options.input, options.config);
   const auto cloud = read_pcd(options.input);
   if (!cloud) throw Failure(cloud.error().message);
   // At the desk there is time: nothing of the file is left out.
-  DetectSettings settings = all.detect_cloud;
-  settings.max_points = std::max(settings.max_points, static_cast<int>(cloud->size()));
-  auto detector =
-      make_detector(settings, settings_file(options.input, options.config).value_or(fs::path()));
+  MemorySettings& memory = settings.memory;
+  memory.cloud_points = std::max(memory.cloud_points, static_cast<int>(cloud->size()));
+  auto detector = make_detector(settings.detect_cloud, memory.for_cloud(),
+                                settings_file(options.input, options.config).value_or(fs::path()));
   if (!detector) throw Failure(detector.error().message);
 
   ListWriter writer(options.out);
-  ObstacleList list(static_cast<std::size_t>(settings.max_obstacles));
+  ObstacleList list(static_cast<std::size_t>(memory.obstacles));
   detector->detect(*cloud, list.obstacles);
   writer.write(list);
   writer.finish();

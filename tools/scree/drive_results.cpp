@@ -39,7 +39,7 @@ void drive_with_faults(const Drive& drive, const Settings& settings, const Study
   const Faults faults = draw_faults(drive.settings.seconds, drive.settings.seed);
   Pipeline pipeline = make_pipeline(settings, task);
   DriveFeed feed(drive, faults);
-  Sweep sweep(static_cast<std::size_t>(settings.map.max_points));
+  Sweep sweep(static_cast<std::size_t>(settings.memory.sweep_points));
   while (feed.next(sweep, {&pipeline.sensors()})) {
     result.of(DriveWay::faults).push_back(copy_of(pipeline.process(sweep)));
   }
@@ -59,7 +59,7 @@ void drive_without_faults(const Drive& drive, const Settings& settings, const St
   Pipeline dead_reckoning = make_pipeline(unregistered, task);
   Pipeline sweeps = make_pipeline(settings, task);
   DriveFeed feed(drive);
-  Sweep sweep(static_cast<std::size_t>(settings.map.max_points));
+  Sweep sweep(static_cast<std::size_t>(settings.memory.sweep_points));
   while (feed.next(sweep, {&pipeline.sensors(), &dead_reckoning.sensors()})) {
     result.of(DriveWay::pipeline).push_back(copy_of(pipeline.process(sweep)));
     result.of(DriveWay::dead_reckoning).push_back(copy_of(dead_reckoning.process(sweep)));

@@ -32,11 +32,12 @@ void replace_quoted(std::string& toml, const std::string& name, const std::strin
   }
 }
 
-/// The file itself, or with drop-ins what it and they come to.
+/// The file itself, or with drop-ins or profiles beside it what it and they come to.
 std::string text_of(const fs::path& config, const Configuration& configuration) {
-  const bool is_one_file = std::ranges::all_of(
-      configuration.sources, [&](const auto& key) { return key.second.file == config.string(); });
-  if (!is_one_file) return effective_toml(configuration, true);
+  const bool is_one_file = std::ranges::all_of(configuration.sources, [&](const auto& key) {
+    return key.second.is_default() || key.second.file == config.string();
+  });
+  if (!is_one_file) return effective_toml(configuration, Shown::set);
   std::ifstream read(config, std::ios::binary);
   std::string text{std::istreambuf_iterator<char>(read), {}};
   if (!read) throw Failure("cannot read " + config.string());

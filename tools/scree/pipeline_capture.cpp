@@ -22,11 +22,11 @@ Pipeline make_pipeline(const Settings& settings, const std::filesystem::path& ca
 
 void warn_of_losses(Pipeline& pipeline, const WaitingSweeps& sweeps) {
   const Mapper& mapper = pipeline.mapper();
-  warn("map", mapper.map().dropped(), "points found no room: raise map.max_voxels");
+  warn("map", mapper.map().dropped(), "points found no room: raise memory.map_voxels");
   warn("map", mapper.slips(),
        "sweeps during which the wheel slipped; it was not believed (in all of them: encoder.scale "
        "is wrong, or its sign)");
-  warn("tracks", pipeline.tracker().dropped(), "found no room: raise detect.map.max_obstacles");
+  warn("tracks", pipeline.tracker().dropped(), "found no room: raise memory.obstacles");
   warn("IMU", pipeline.sensors().heading().taken_out(),
        "turns of its yaw that its angular rate did not know of; they were not believed");
   warn("motion", pipeline.sensors().dropped(), "samples of IMU or encoder found no room");

@@ -86,7 +86,7 @@ std::vector<Way> both_ways(const StudyTask& task) {
 }
 
 Detector detector_of(const DetectSettings& settings, const StudyTask& task) {
-  auto detector = make_detector(settings, task.config_file);
+  auto detector = make_detector(settings, task.settings.memory.for_cloud(), task.config_file);
   if (!detector) throw Failure(detector.error().message);
   return *std::move(detector);
 }
@@ -98,23 +98,31 @@ std::vector<Detector> detectors_of(const std::vector<Way>& ways, const StudyTask
   return detectors;
 }
 
-ObstacleList list_of(Detector& detector, PointView cloud, const DetectSettings& settings) {
-  ObstacleList list(static_cast<std::size_t>(settings.max_obstacles));
+ObstacleList list_of(Detector& detector, PointView cloud) {
+  ObstacleList list(static_cast<std::size_t>(MemorySettings().obstacles));
   detector.detect(cloud, list.obstacles);
   return list;
 }
 
+FindClusters finder_of(Detector& detector) {
+  return [&detector](PointView cloud) {
+    FixedVector<Obstacle> unused(1);
+    detector.detect(cloud, unused);
+    return detector.clustered();
+  };
+}
+
 std::vector<LabelledClusters> label_worlds(
-    std::span<Detector> detectors, const std::function<CloudWorld(std::uint64_t seed)>& world_of,
-    const SeedRange& seeds, const std::string& what) {
-  std::vector<LabelledClusters> all(detectors.size());
-  FixedVector<Obstacle> unused(1);
+    std::span<const FindClusters> ways,
+    const std::function<CloudWorld(std::uint64_t seed)>& world_of, const SeedRange& seeds,
+    const std::string& what) {
+  std::vector<LabelledClusters> all(ways.size());
   Progress progress("clusters for " + what, seeds.count);
   for (std::size_t i = 0; i < seeds.count; ++i) {
     const CloudWorld world = world_of(seeds.first + i);
-    for (std::size_t d = 0; d < detectors.size(); ++d) {
-      detectors[d].detect(world.cloud, unused);
-      all[d] += label_clusters(detectors[d], world.terrain.features(), world.truth.visible[0].ids);
+    for (std::size_t w = 0; w < ways.size(); ++w) {
+      all[w] += label_clusters(ways[w](world.cloud), world.terrain.features(),
+                               world.truth.visible[0].ids);
     }
     progress(i + 1);
   }

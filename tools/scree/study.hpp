@@ -40,13 +40,19 @@ std::vector<Way> both_ways(const StudyTask& task);
 Detector detector_of(const DetectSettings& settings, const StudyTask& task);
 std::vector<Detector> detectors_of(const std::vector<Way>& ways, const StudyTask& task);
 /// Its answer to a cloud.
-ObstacleList list_of(Detector& detector, PointView cloud, const DetectSettings& settings);
+ObstacleList list_of(Detector& detector, PointView cloud);
 
-/// What each detector makes of the clouds of the same worlds, one for each detector.
+/// Finds the clusters of a cloud; they are valid until the next call.
+using FindClusters = std::function<ClusteredPoints(PointView cloud)>;
+/// @param detector must outlive the function
+FindClusters finder_of(Detector& detector);
+
+/// What each way of finding clusters makes of the clouds of the same worlds, one for each way.
 /// @param what the clusters are for, in the progress
 std::vector<LabelledClusters> label_worlds(
-    std::span<Detector> detectors, const std::function<CloudWorld(std::uint64_t seed)>& world_of,
-    const SeedRange& seeds, const std::string& what);
+    std::span<const FindClusters> ways,
+    const std::function<CloudWorld(std::uint64_t seed)>& world_of, const SeedRange& seeds,
+    const std::string& what);
 
 /// Write into the task's folder and say so on stdout, a table with its text. Throw Failure.
 void write_text(const StudyTask& task, const std::string& name, const std::string& text);

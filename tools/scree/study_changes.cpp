@@ -1,14 +1,18 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <ctime>
+#include <memory>
+#include <optional>
 
 #include "chart.hpp"
 #include "commands.hpp"
 #include "progress.hpp"
 #include "scoring/scoring.hpp"
+#include "scree/detect/classification.hpp"
 #include "scree/learn/training.hpp"
 #include "study.hpp"
 #include "study_pairs.hpp"
+#include "study_rung.hpp"
 
 namespace scree::cli {
 namespace {
@@ -18,36 +22,38 @@ struct Rung {
   std::string name;
   DetectSettings detect;
   std::size_t inputs = kPaperFeatures;
+  std::optional<SurfaceRung::Candidates> in_between;  ///< neither method alone, see SurfaceRung
 };
 
 /// From the paper's method to ours, each with one change more than the one before; then two beside
 /// the ladder.
 std::vector<Rung> ladder() {
-  Rung rung{"the paper's method", DetectSettings::for_paper()};
+  Rung rung{"the paper's method", DetectSettings::for_paper(), kPaperFeatures, {}};
   DetectSettings& detect = rung.detect;
   std::vector<Rung> rungs = {rung};
   const auto climb = [&](const std::string& name) {
     rung.name = name;
     rungs.push_back(rung);
   };
-  detect.kernel_bandwidth = 0.5;
+  detect.edges.kernel.bandwidth = detect.surface.kernel.bandwidth = 0.5;
   climb("+ narrower kernel");
-  detect.suppression = false;
+  detect.edges.suppression = false;
   climb("+ no suppression");
-  detect.ground = GroundReference::surface;
+  rung.in_between = SurfaceRung::Candidates::steep;
   climb("+ heights above the ground's surface");
-  detect.candidates = Candidates::bodies;
-  detect.cluster_method = ClusterMethod::euclidean;
-  detect.cluster_tolerance = 0.2;
-  detect.min_cluster_size = 4;
+  rung.in_between.reset();
+  detect.method = Method::surface;
   climb("+ bodies instead of edge points");
   rung.inputs = kCloudFeatures;
   climb("+ all features");
-  rungs.push_back({"beside it: as scree.toml", DetectSettings::for_cloud(), kCloudFeatures});
-  detect.cluster_method = ClusterMethod::supervoxel;
-  detect.voxel_size = 0.06;
-  detect.seed_distance = 0.12;
-  detect.min_block_points = 1;  // so small a block holds hardly more than four thinned points
+  rungs.push_back({"beside it: as shipped", DetectSettings::for_cloud(), kCloudFeatures, {}});
+  rung.in_between = SurfaceRung::Candidates::off_ground;
+  detect.edges.voxel_size = 0.06;
+  detect.edges.seed_distance = 0.12;
+  // So small a block holds hardly more than four thinned points.
+  detect.edges.min_block_points = 1;
+  detect.edges.cluster_tolerance = detect.surface.cluster_tolerance;
+  detect.edges.min_cluster_size = detect.surface.min_cluster_size;
   climb("beside it: super-voxels");
   return rungs;
 }
@@ -56,14 +62,28 @@ CloudWorld varied_world(std::uint64_t seed) {
   return {varied_terrain(seed), varied_cloud(seed), seed};
 }
 
-/// A detector for each rung, with the network that learnt from the clusters which it finds.
-std::vector<Network> train_each(const std::vector<Rung>& rungs, const SeedRange& training,
+FindClusters finder_of(const Rung& rung) {
+  const DetectorLimits limits = MemorySettings().for_cloud();
+  if (rung.in_between) {
+    auto between = std::make_shared<SurfaceRung>(rung.detect, limits, *rung.in_between);
+    return [between](PointView cloud) { return between->find(cloud); };
+  }
+  auto detector = std::make_shared<Detector>(rung.detect, limits, Network());
+  return [detector](PointView cloud) { return cli::finder_of(*detector)(cloud); };
+}
+
+std::vector<FindClusters> finders_of(const std::vector<Rung>& rungs) {
+  std::vector<FindClusters> finders;
+  for (const Rung& rung : rungs) finders.push_back(finder_of(rung));
+  return finders;
+}
+
+/// A network for each rung, which has learnt from the clusters that the rung finds.
+std::vector<Network> train_each(const std::vector<Rung>& rungs,
+                                std::span<const FindClusters> finders, const SeedRange& training,
                                 const SeedRange& validation) {
-  std::vector<Detector> detectors;
-  detectors.reserve(rungs.size());
-  for (const Rung& rung : rungs) detectors.emplace_back(rung.detect, Network());
-  const auto learnt = label_worlds(detectors, varied_world, training, "training");
-  const auto watched = label_worlds(detectors, varied_world, validation, "validation");
+  const auto learnt = label_worlds(finders, varied_world, training, "training");
+  const auto watched = label_worlds(finders, varied_world, validation, "validation");
   std::vector<Network> networks;
   for (std::size_t r = 0; r < rungs.size(); ++r) {
     if (learnt[r].samples.empty()) throw Failure(rungs[r].name + ": no cluster to train on");
@@ -81,29 +101,29 @@ struct Outcome {
   LabelledClusters clusters;
   std::vector<double> milliseconds;
 
-  void add(Detector& detector, const CloudWorld& world, const DetectSettings& settings) {
+  void add(const FindClusters& find, const Network& network, double min_confidence,
+           const CloudWorld& world) {
     const std::clock_t begin = std::clock();
-    const ObstacleList list = list_of(detector, world.cloud, settings);
+    const ClusteredPoints found = find(world.cloud);
+    ObstacleList list(static_cast<std::size_t>(MemorySettings().obstacles));
+    StageCounts unused;
+    classify(found.clusters.all(), network, min_confidence, list.obstacles, unused);
     milliseconds.push_back(1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
     scorer.add(world.truth, {&list, 1});
     pairs.add(world, compare(world.truth, world.truth.visible[0], list));
-    clusters += label_clusters(detector, world.terrain.features(), world.truth.visible[0].ids);
+    clusters += label_clusters(found, world.terrain.features(), world.truth.visible[0].ids);
   }
 };
 
-std::vector<Outcome> judge(const std::vector<Rung>& rungs, const std::vector<Network>& networks,
-                           const SeedRange& seeds) {
-  std::vector<Detector> detectors;
-  detectors.reserve(rungs.size());
-  for (std::size_t r = 0; r < rungs.size(); ++r) {
-    detectors.emplace_back(rungs[r].detect, networks[r]);
-  }
+std::vector<Outcome> score_each(const std::vector<Rung>& rungs,
+                                std::span<const FindClusters> finders,
+                                const std::vector<Network>& networks, const SeedRange& seeds) {
   std::vector<Outcome> outcomes(rungs.size());
   Progress progress("clouds", seeds.count);
   for (std::size_t i = 0; i < seeds.count; ++i) {
     const CloudWorld world = varied_world(seeds.first + i);
     for (std::size_t r = 0; r < rungs.size(); ++r) {
-      outcomes[r].add(detectors[r], world, rungs[r].detect);
+      outcomes[r].add(finders[r], networks[r], rungs[r].detect.min_confidence, world);
     }
     progress(i + 1);
   }
@@ -118,15 +138,15 @@ void study_changes(const StudyTask& task) {
   const SeedRange training{task.seeds.first + 4'000'000, task.training};
   const SeedRange validation{task.seeds.first + 5'000'000, (2 * task.training + 4) / 5};
   const std::vector<Rung> rungs = ladder();
-  const std::vector<Network> networks = train_each(rungs, training, validation);
-  const std::vector<Outcome> outcomes = judge(rungs, networks, judged);
+  const std::vector<FindClusters> finders = finders_of(rungs);
+  const std::vector<Network> networks = train_each(rungs, finders, training, validation);
+  const std::vector<Outcome> outcomes = score_each(rungs, finders, networks, judged);
 
   BarChart chart;
   chart.title = "What each change to the paper's method brought";
   chart.subtitle = fmt::format(
       "detection and kind together on {} simulated clouds of all scenes; each with a network of "
-      "its "
-      "own, trained on {} clouds",
+      "its own, trained on {} clouds",
       judged.count, training.count);
   chart.y = {"percent", 0, 107, false};  // with room for the numbers
   chart.decimals = 1;

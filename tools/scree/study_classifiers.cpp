@@ -46,10 +46,12 @@ struct Parts {
 /// Clusters of the same clouds for each way.
 std::vector<Parts> gather(const std::vector<Way>& ways, const StudyTask& task) {
   std::vector<Detector> detectors = detectors_of(ways, task);
+  std::vector<FindClusters> finders;
+  for (Detector& detector : detectors) finders.push_back(finder_of(detector));
   const auto part = [&](const TerrainSettings& settings, std::size_t points, const SeedRange& seeds,
                         const std::string& what) {
     const auto world_of = [&](std::uint64_t seed) { return CloudWorld(settings, points, seed); };
-    return label_worlds(detectors, world_of, seeds, what);
+    return label_worlds(finders, world_of, seeds, what);
   };
   // Apart from each other, and from the seeds that any study judges.
   const std::uint64_t first = task.seeds.first + 1'000'000;
@@ -132,7 +134,7 @@ void study_classifiers(const StudyTask& task) {
       throw Failure("the detector found no cluster to train on, see its settings");
     }
     TrainingSettings settings;
-    settings.inputs = ways[w].detect.uses_surface() ? kCloudFeatures : kPaperFeatures;
+    settings.inputs = ways[w].detect.method == Method::surface ? kCloudFeatures : kPaperFeatures;
     const Network trained =
         train_network(parts.training.samples, parts.validation.samples, settings).network;
     const double least = ways[w].detect.min_confidence;

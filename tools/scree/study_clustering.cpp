@@ -18,10 +18,13 @@ constexpr double kPaperEdgeShare = 82'242.0 / 413'591;
 /// The threshold that keeps this share of a cloud's points. @pre the detector has just seen it
 double threshold_for(const Detector& detector, double share) {
   std::vector<float> slopes;
-  for (std::size_t i = 0; i < detector.slope_x().size(); ++i) {
-    const float slope = std::hypot(detector.slope_x()[i], detector.slope_y()[i]);
-    if (!std::isnan(slope)) slopes.push_back(slope);
-  }
+  detector.visit_method([&](const auto& method) {
+    const SlopedCloud& sloped = method.sloped();
+    for (std::size_t i = 0; i < sloped.size(); ++i) {
+      if (!sloped.is_known(i)) continue;
+      slopes.push_back(std::hypot(sloped.slope_x[i], sloped.slope_y[i]));
+    }
+  });
   if (slopes.empty()) return 0;
   const auto rank =
       static_cast<std::ptrdiff_t>((1 - share) * static_cast<double>(slopes.size() - 1));
@@ -40,10 +43,10 @@ struct Fit {
 };
 
 /// An obstacle is in a cluster that has a tenth of its clustered points, and at least five.
-void judge(const Detector& detector, const CloudWorld& world, Fit& fit) {
+void judge(const ClusteredPoints& found, const CloudWorld& world, Fit& fit) {
   constexpr double kGrowth = 0.15;
-  const auto clusters = detector.clusters().all();
-  const PointCloud& points = detector.kept().points;
+  const auto clusters = found.clusters.all();
+  const PointCloud& points = found.points.points;
   std::vector<std::vector<std::size_t>> homes;          // clusters of each obstacle
   std::vector<std::size_t> guests(clusters.size(), 0);  // obstacles of each cluster
   for (const int id : obstacle_ids(world.terrain)) {
@@ -52,7 +55,7 @@ void judge(const Detector& detector, const CloudWorld& world, Fit& fit) {
     std::map<std::size_t, std::size_t> shares;
     std::size_t all = 0;
     for (std::size_t c = 0; c < clusters.size(); ++c) {
-      for (const std::uint32_t i : detector.clusters().members(clusters[c])) {
+      for (const std::uint32_t i : found.clusters.members(clusters[c])) {
         const Eigen::Vector2d at(static_cast<double>(points.x[i]),
                                  static_cast<double>(points.y[i]));
         if (distance(feature->footprint, at) > kGrowth) continue;
@@ -79,17 +82,17 @@ void judge(const Detector& detector, const CloudWorld& world, Fit& fit) {
   }
 }
 
-void draw(PanelPage& page, std::size_t number, const Detector& detector, const CloudWorld& world,
-          const std::string& name) {
-  const auto clusters = detector.clusters().all();
+void draw(PanelPage& page, std::size_t number, const ClusteredPoints& found,
+          const CloudWorld& world, const std::string& name) {
+  const auto clusters = found.clusters.all();
   GroundView view(
       page.drawing,
       page.panel(static_cast<int>(number) % kColumns, static_cast<int>(number) / kColumns),
       world.terrain.half_size(), fmt::format("{}: {} clusters", name, clusters.size()));
-  const PointCloud& points = detector.kept().points;
+  const PointCloud& points = found.points.points;
   std::vector<Colour> colours(points.size(), Colour{0.8, 0.8, 0.82});
   for (std::size_t c = 0; c < clusters.size(); ++c) {
-    for (const std::uint32_t i : detector.clusters().members(clusters[c])) {
+    for (const std::uint32_t i : found.clusters.members(clusters[c])) {
       colours[i] = scattered_colour(c);
     }
   }
@@ -109,8 +112,7 @@ void study_clustering(const StudyTask& task) {
       {"Scree, as configured", task.settings.detect_cloud},
       {"plain Euclidean, edges as many as the paper's", DetectSettings::for_paper()},
       {"super-voxels, edges as many as the paper's", DetectSettings::for_paper()}};
-  ways[0].detect.cluster_method = ways[3].detect.cluster_method = ClusterMethod::euclidean;
-  ways[1].detect.cluster_method = ways[4].detect.cluster_method = ClusterMethod::supervoxel;
+  ways[0].detect.edges.clustering = ways[3].detect.edges.clustering = EdgeClustering::euclidean;
   constexpr std::size_t kFirstOfPaperShare = 3;
   std::vector<Fit> fits(ways.size());
   PanelPage page(kColumns, 2, "Clusters of one cloud (paper: fig. 14 and 16)",
@@ -124,12 +126,12 @@ void study_clustering(const StudyTask& task) {
       double threshold = 0;
       for (std::size_t w = 0; w < ways.size(); ++w) {
         DetectSettings settings = ways[w].detect;
-        if (w >= kFirstOfPaperShare) settings.edge_threshold = threshold;
+        if (w >= kFirstOfPaperShare) settings.edges.threshold = threshold;
         Detector detector = detector_of(settings, task);
-        list_of(detector, world.cloud, settings);
+        list_of(detector, world.cloud);
         if (w == 0) threshold = threshold_for(detector, kPaperEdgeShare);
-        judge(detector, world, fits[w]);
-        if (i == 0) draw(page, w, detector, world, ways[w].name);
+        judge(detector.clustered(), world, fits[w]);
+        if (i == 0) draw(page, w, detector.clustered(), world, ways[w].name);
       }
       progress(i + 1);
     }

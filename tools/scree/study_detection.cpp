@@ -27,7 +27,7 @@ std::vector<CloudScores> score_clouds(const std::vector<Way>& ways, const StudyT
   for (std::size_t i = 0; i < task.seeds.count; ++i) {
     const CloudWorld world(TerrainSettings(), task.points, task.seeds.first + i);
     for (std::size_t w = 0; w < ways.size(); ++w) {
-      const ObstacleList list = list_of(detectors[w], world.cloud, ways[w].detect);
+      const ObstacleList list = list_of(detectors[w], world.cloud);
       scores[w].scorer.add(world.truth, {&list, 1});
       scores[w].pairs.add(world, compare(world.truth, world.truth.visible[0], list));
     }

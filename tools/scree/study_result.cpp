@@ -15,7 +15,7 @@ constexpr Colour kGreen{0.0, 0.55, 0.25}, kWrong{0.95, 0.55, 0.0};
 void draw(PanelPage& page, int column, const Detector& detector, const CloudWorld& world,
           const ObstacleList& list, const Comparison& comparison, const std::string& title) {
   GroundView view(page.drawing, page.panel(column, 0), world.terrain.half_size(), title);
-  const PointCloud& ground = detector.thinned();
+  const PointCloud& ground = detector.points();
   view.points(ground, 1, [&](std::size_t i) {
     const double light = 0.80 + 0.06 * std::clamp(static_cast<double>(ground.z[i]), -2.0, 2.0);
     return Colour{light, light, light};
@@ -56,7 +56,7 @@ void study_result(const StudyTask& task) {
   std::vector<ObstacleList> lists;
   for (const Way& way : ways) {
     Detector detector = detector_of(way.detect, task);
-    lists.push_back(list_of(detector, world.cloud, way.detect));
+    lists.push_back(list_of(detector, world.cloud));
     const ObstacleList& list = lists.back();
     comparisons.push_back(compare(world.truth, world.truth.visible[0], list));
     Scorer scorer;

@@ -15,9 +15,9 @@ constexpr std::array kDistances = {0.05, 0.10, 0.15, 0.20, 0.25, 0.30, 0.40, 0.5
 
 /// Blocks are made of voxels: these have to be smaller.
 DetectSettings with_seed_distance(DetectSettings settings, double distance) {
-  settings.cluster_method = ClusterMethod::supervoxel;
-  settings.seed_distance = distance;
-  settings.voxel_size = std::min(settings.voxel_size, distance / 2);
+  EdgeSettings& edges = settings.edges;
+  edges.seed_distance = distance;
+  edges.voxel_size = std::min(edges.voxel_size, distance / 2);
   return settings;
 }
 
@@ -31,11 +31,12 @@ void study_seed_distance(const StudyTask& task) {
   };
   std::vector<Case> cases(2);
   const DetectSettings paper = DetectSettings::for_paper();
-  cases[0] = {fmt::format("paper's chain, blocks of {} points and more", paper.min_block_points),
-              paper,
-              {}};
+  cases[0] = {
+      fmt::format("paper's chain, blocks of {} points and more", paper.edges.min_block_points),
+      paper,
+      {}};
   cases[1] = {"paper's chain, blocks of one point and more", paper, {}};
-  cases[1].detect.min_block_points = 1;
+  cases[1].detect.edges.min_block_points = 1;
   {
     Progress progress("clouds", task.seeds.count);
     for (std::size_t i = 0; i < task.seeds.count; ++i) {
@@ -44,7 +45,7 @@ void study_seed_distance(const StudyTask& task) {
         for (std::size_t d = 0; d < kDistances.size(); ++d) {
           const DetectSettings settings = with_seed_distance(each.detect, kDistances[d]);
           Detector detector = detector_of(settings, task);
-          const ObstacleList list = list_of(detector, world.cloud, settings);
+          const ObstacleList list = list_of(detector, world.cloud);
           each.scorers[d].add(world.truth, {&list, 1});
         }
       }
@@ -56,7 +57,7 @@ void study_seed_distance(const StudyTask& task) {
   chart.subtitle = fmt::format(
       "{} simulated clouds of {} points, detection and kind together; voxels of {:g} m or half the "
       "size",
-      task.seeds.count, task.points, paper.voxel_size);
+      task.seeds.count, task.points, paper.edges.voxel_size);
   chart.x = {"Rseed, size of a super-voxel [m]", 0, 0.75, false};
   chart.y = {"F1", 0, 1, false};
   std::string table = "rseed_m";

@@ -55,17 +55,20 @@ void study_stages(const StudyTask& task) {
                                   {"after suppression (fig. 13)", 26'011, {}}}};
   for (std::size_t w = 0; w < ways.size(); ++w) {
     Detector detector = detector_of(ways[w].detect, task);
-    list_of(detector, world.cloud, ways[w].detect);
+    list_of(detector, world.cloud);
     const StageCounts& counts = detector.counts();
     stages[0].ours[w] = counts.input;
     stages[1].ours[w] = counts.voxels;
-    stages[2].ours[w] = counts.edges;
+    stages[2].ours[w] = counts.candidates;
     stages[3].ours[w] = counts.kept;
     if (w > 0) continue;
     draw(page, 0, 0, world.cloud, world, "cloud", stages[0].paper, bounds);
-    draw(page, 1, 0, detector.thinned(), world, "voxel grid", stages[1].paper, bounds);
-    draw(page, 0, 1, detector.edges().points, world, "edges", stages[2].paper, bounds);
-    draw(page, 1, 1, detector.kept().points, world, "after suppression", stages[3].paper, bounds);
+    draw(page, 1, 0, detector.points(), world, "voxel grid", stages[1].paper, bounds);
+    detector.visit_method([&](const auto& method) {
+      draw(page, 0, 1, method.candidates().points, world, "edges", stages[2].paper, bounds);
+    });
+    draw(page, 1, 1, detector.clustered().points.points, world, "after suppression",
+         stages[3].paper, bounds);
   }
   std::string table = "stage,paper";
   for (const Way& way : ways) table += fmt::format(",\"{}\"", way.name);

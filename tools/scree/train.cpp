@@ -112,6 +112,7 @@ std::string provenance(const TrainOptions& options, const DetectSettings& detect
   text += "\nThe detector's settings:\n";
   const std::string table = options.profile == Profile::track ? "map" : profile;
   for_each_detect_key("detect." + table, detect, [&](const Key& key, const auto& value) {
+    if (!key.is_live) return;
     using Value = std::decay_t<decltype(value)>;
     if constexpr (std::is_enum_v<Value>) {
       text += fmt::format("{} = \"{}\"\n", key.name, name_of(value));

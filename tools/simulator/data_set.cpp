@@ -43,13 +43,14 @@ namespace {
 class FromClouds {
 public:
   explicit FromClouds(const Settings& settings)
-      : detector_(settings.detect_cloud, Network()),
-        unused_(static_cast<std::size_t>(settings.detect_cloud.max_obstacles)) {}
+      : detector_(settings.detect_cloud, settings.memory.for_cloud(), Network()),
+        unused_(static_cast<std::size_t>(settings.memory.obstacles)) {}
 
   LabelledClusters operator()(std::uint64_t seed) {
     const CloudWorld world(varied_terrain(seed), varied_cloud(seed), seed);
     detector_.detect(world.cloud, unused_);
-    return label_clusters(detector_, world.terrain.features(), world.truth.visible[0].ids);
+    return label_clusters(detector_.clustered(), world.terrain.features(),
+                          world.truth.visible[0].ids);
   }
 
 private:
@@ -60,15 +61,13 @@ private:
 class FromSweeps {
 public:
   explicit FromSweeps(const Settings& settings)
-      : lidar_(settings.lidar),
-        pipeline_(settings, Detector(settings.detect_map, Network()),
-                  Detector(settings.detect_sweep, Network())) {}
+      : lidar_(settings.lidar), pipeline_(settings, Networks()) {}
 
   LabelledClusters operator()(std::uint64_t seed) {
     constexpr std::array kRates = {5.0, 10.0, 10.0, 20.0};
     const SweepWorld world(lidar_, kRates[Random(seed).index(kRates.size())], seed);
     pipeline_.process(world.sweep);
-    return label_clusters(pipeline_.detector(), world.terrain.features(),
+    return label_clusters(pipeline_.detector().clustered(), world.terrain.features(),
                           world.truth.visible[0].ids);
   }
 
@@ -110,10 +109,9 @@ public:
     const Drive drive(training_drive(seed));
     Settings settings = with_sensors_of(drive.robot, settings_);
     if (seed % 8 == 5) settings.map.registration = false;
-    Pipeline pipeline(settings, Detector(settings.detect_map, Network()),
-                      Detector(settings.detect_sweep, Network()));
+    Pipeline pipeline(settings, Networks());
     DriveFeed feed(drive);
-    Sweep sweep(static_cast<std::size_t>(settings.map.max_points));
+    Sweep sweep(static_cast<std::size_t>(settings.memory.sweep_points));
     LabelledClusters all;
     for (int i = 1; feed.next(sweep, {&pipeline.sensors()}); ++i) {
       pipeline.process(sweep);
@@ -121,8 +119,8 @@ public:
       const Mapper& mapper = pipeline.mapper();
       const auto features = as_believed(drive.terrain.features(), drive.motion.base(sweep.end_ns),
                                         mapper.pose(), mapper.map().origin());
-      all += label_clusters(pipeline.detector(), features, feed.truth().visible.back().ids,
-                            kLeastPiece);
+      all += label_clusters(pipeline.detector().clustered(), features,
+                            feed.truth().visible.back().ids, kLeastPiece);
     }
     return all;
   }
@@ -140,10 +138,9 @@ public:
     constexpr int kEvery = 3;  // sweeps
     const Drive drive(training_drive(seed));
     const Settings settings = with_sensors_of(drive.robot, settings_);
-    Pipeline pipeline(settings, Detector(settings.detect_map, clusters_),
-                      Detector(settings.detect_sweep, Network()));
+    Pipeline pipeline(settings, {clusters_, Network(), std::nullopt});
     DriveFeed feed(drive);
-    Sweep sweep(static_cast<std::size_t>(settings.map.max_points));
+    Sweep sweep(static_cast<std::size_t>(settings.memory.sweep_points));
     std::set<int> known;
     LabelledClusters all;
     for (int i = 1; feed.next(sweep, {&pipeline.sensors()}); ++i) {

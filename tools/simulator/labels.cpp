@@ -18,15 +18,15 @@ bool covers(const TerrainFeature& feature, const Eigen::Vector2d& point) {
 }
 
 /// The feature that a cluster belongs to, null for none.
-const TerrainFeature* feature_of(const Cluster& cluster, const Detector& detector,
+const TerrainFeature* feature_of(const Cluster& cluster, const ClusteredPoints& found,
                                  std::span<const TerrainFeature> features) {
   const Eigen::Vector2d middle(static_cast<double>(cluster.box.center_x),
                                static_cast<double>(cluster.box.center_y));
   for (const TerrainFeature& feature : features) {
     if (covers(feature, middle)) return &feature;
   }
-  const auto members = detector.clusters().members(cluster);
-  const PointCloud& points = detector.kept().points;
+  const auto members = found.clusters.members(cluster);
+  const PointCloud& points = found.points.points;
   for (const TerrainFeature& feature : features) {
     const auto covered = std::ranges::count_if(members, [&](std::uint32_t i) {
       return covers(feature, {static_cast<double>(points.x[i]), static_cast<double>(points.y[i])});
@@ -58,7 +58,8 @@ LabelledClusters& LabelledClusters::operator+=(const LabelledClusters& other) {
   return *this;
 }
 
-LabelledClusters label_clusters(const Detector& detector, std::span<const TerrainFeature> features,
+LabelledClusters label_clusters(const ClusteredPoints& found,
+                                std::span<const TerrainFeature> features,
                                 std::span<const int> asked, double least_piece) {
   struct Named {
     Sample sample;
@@ -67,9 +68,9 @@ LabelledClusters label_clusters(const Detector& detector, std::span<const Terrai
   };
   std::vector<Named> all;
   std::vector<std::uint32_t> largest(Terrain::kMostFeatures + 1);
-  for (const Cluster& cluster : detector.clusters().all()) {
+  for (const Cluster& cluster : found.clusters.all()) {
     if (!std::ranges::all_of(cluster.features, [](float f) { return std::isfinite(f); })) continue;
-    const TerrainFeature* feature = feature_of(cluster, detector, features);
+    const TerrainFeature* feature = feature_of(cluster, found, features);
     if (feature != nullptr && feature->is_small) continue;
     const Label label = label_of(feature, cluster.features);
     const int id = feature != nullptr ? feature->id : 0;

@@ -8,7 +8,7 @@
 
 #include "scoring/truth.hpp"
 #include "scree/core/pose.hpp"
-#include "scree/detect/detector.hpp"
+#include "scree/detect/clusters.hpp"
 #include "scree/detect/tracker.hpp"
 #include "scree/learn/sample.hpp"
 #include "simulator/terrain.hpp"
@@ -24,15 +24,16 @@ struct LabelledClusters {
   LabelledClusters& operator+=(const LabelledClusters& other);
 };
 
-/// Names the truth of each cluster of the detector's last cloud, which must lie in the frame of
-/// the features: the feature whose footprint, grown by 0.15 m, covers the middle of the cluster's
-/// box or at least half of its points. Left out are clusters whose features are not finite, and
-/// those of stones and dents too small to be asked for.
+/// Names the truth of each cluster of a cloud, which must lie in the frame of the features: the
+/// feature whose footprint, grown by 0.15 m, covers the middle of the cluster's box or at least
+/// half of its points. Left out are clusters whose features are not finite, and those of stones and
+/// dents too small to be asked for.
 /// @param asked ids of the features that count as obstacles asked for; other features still give
 /// their clusters a label
 /// @param least_piece share of the points of an obstacle's largest cluster; smaller ones are left
 /// out: splinters of it, or tufts that stand beside it
-LabelledClusters label_clusters(const Detector& detector, std::span<const TerrainFeature> features,
+LabelledClusters label_clusters(const ClusteredPoints& found,
+                                std::span<const TerrainFeature> features,
                                 std::span<const int> asked, double least_piece = 0);
 
 /// Names the truth of each track within tracking.reach that may be published, by the contract's

@@ -16,6 +16,12 @@
 
 namespace scree {
 
+/// The networks that a pipeline needs.
+struct Networks {
+  Network map, sweep;            ///< of detect.map and detect.sweep
+  std::optional<Network> judge;  ///< of tracks
+};
+
 /// From sweeps and motion samples to obstacle lists: the daemon and `scree detect` both run this.
 /// Each sweep is added to the map, and obstacles are found in the map. As long as no IMU and no
 /// encoder has said anything, each sweep is taken by itself instead, and `odom` is `base`; an
@@ -26,10 +32,7 @@ public:
   /// @param config_file beside which a relative name of a weights file is looked for first; may be
   /// empty
   static Result<Pipeline> make(const Settings& settings, const std::filesystem::path& config_file);
-  /// With detectors made elsewhere, of settings.detect_map and settings.detect_sweep, and the judge
-  /// of tracks, if any.
-  Pipeline(const Settings& settings, Detector map_detector, Detector sweep_detector,
-           std::optional<Network> judge = std::nullopt);
+  Pipeline(const Settings& settings, const Networks& networks);
 
   /// Where the IMU's and the encoder's threads put their samples.
   SyncBuffer& sensors() { return *sensors_; }
@@ -77,15 +80,10 @@ private:
 
 /// The weights in a file that a setting names.
 Result<Network> load_network(const std::string& name, const std::filesystem::path& config_file);
-/// All that a pipeline needs.
-struct Networks {
-  Network map, sweep;            ///< of detect.map and detect.sweep
-  std::optional<Network> judge;  ///< of tracks
-};
 Result<Networks> load_networks(const Settings& settings, const std::filesystem::path& config_file);
 /// A detector with its weights, for clouds (detect.cloud), the map (detect.map) or sweeps
-/// (detect.sweep).
-Result<Detector> make_detector(const DetectSettings& settings,
+/// (detect.sweep). The network must not ask for features that the method has not.
+Result<Detector> make_detector(const DetectSettings& settings, const DetectorLimits& limits,
                                const std::filesystem::path& config_file);
 
 }  // namespace scree

@@ -15,11 +15,14 @@ namespace scree {
 
 /// Where a value stands.
 struct Source {
-  std::string file;  ///< empty: nowhere, it is the default
+  std::string file;  ///< empty: nowhere
   std::uint32_t line = 0;
+  bool says_default = false;     ///< a profile that says what the program has anyway
+  std::string_view method = {};  ///< that was chosen when it was read, as Key::method
 
-  bool is_default() const { return file.empty(); }
-  std::string text() const;  ///< "FILE:LINE" or "default"
+  /// Whether nobody has chosen the value.
+  bool is_default() const { return file.empty() || says_default; }
+  std::string text() const;  ///< "FILE:LINE", or "default" where it stands nowhere
 };
 
 /// Settings, and where each comes from.
@@ -37,13 +40,21 @@ struct NamedFile {
 /// The files that keys name: weights and a DBC file; a name is empty where there is none.
 std::vector<NamedFile> named_files(const Settings& settings);
 
-/// Reads a TOML file over the defaults, then the drop-ins over it: of scree.toml the files
-/// scree.d/*.toml beside it, in the order of their names. The error names file, line and key, what
-/// is accepted, and for an unknown key the nearest one.
+/// Reads the profiles, over them a TOML file, and over it the drop-ins: of scree.toml the files
+/// scree.d/*.toml beside it, in the order of their names. A profile (cloud.toml, map.toml,
+/// sweep.toml) is the file of that name beside the TOML file, else the shipped one. The error names
+/// file, line and key, what is accepted, and for an unknown key the nearest one.
 Result<Configuration> read_configuration(const std::filesystem::path& file);
 
-/// Every key with its value and, as a remark, where that comes from: TOML that can be read back.
-/// @param only_set leaves out the defaults
-std::string effective_toml(const Configuration& configuration, bool only_set);
+enum class Shown : std::uint8_t {
+  owners,  ///< what a robot's owner sets, and all that a file sets
+  all,
+  set  ///< only what a file sets
+};
+/// Keys with their values and, as remarks, where these come from: TOML that can be read back.
+std::string effective_toml(const Configuration& configuration, Shown shown);
+
+/// Every key that is read, as "table.key", with its value as TOML.
+std::map<std::string, std::string, std::less<>> toml_values(const Settings& settings);
 
 }  // namespace scree

@@ -1,121 +1,16 @@
 #pragma once
 
-#include <string>
+#include <array>
 #include <string_view>
 
-#include "scree/config/settings.hpp"
+#include "scree/config/detect_keys.hpp"
 
 namespace scree {
 
-/// What a person needs to know of a key. The range is inclusive; {0, 0} where none applies.
-struct Key {
-  std::string_view table, name, unit;
-  double low, high;
-  std::string_view meaning;
-};
-/// As it is written in messages: table.key.
-inline std::string full_name(const Key& key) {
-  return std::string(key.table) + "." + std::string(key.name);
-}
-
-/// Calls visit(Key, value&) for every stage setting of one of the two sets.
-template <class Detect, class Visit>
-void for_each_detect_key(std::string_view table, Detect& detect, Visit&& visit) {
-  const auto key = [&](std::string_view name, auto& value, std::string_view unit, double low,
-                       double high, std::string_view meaning) {
-    visit(Key{table, name, unit, low, high, meaning}, value);
-  };
-  key("max_points", detect.max_points, "points", 1, 1 << 26,
-      "largest cloud; points beyond it are dropped and counted. Sets the memory taken at start");
-  key("max_edge_points", detect.max_edge_points, "points", 1, 1 << 26,
-      "most points steeper than edge_threshold; further ones are dropped and counted");
-  key("max_obstacles", detect.max_obstacles, "obstacles", 1, 65536,
-      "longest obstacle list; further ones are dropped and counted");
-  key("voxel_grid", detect.voxel_grid, "", 0, 0,
-      "thin the cloud to the centroid of each occupied voxel first");
-  key("leaf_size", detect.leaf_size, "m", 0.001, 10,
-      "edge of a voxel: larger is faster and smoother, smaller keeps small obstacles");
-  key("clearance", detect.clearance, "m", 0, 100,
-      "points higher than this above the lowest of their column are passed under and go (branches, "
-      "ceilings); 0 keeps all");
-  key("ground", detect.ground, "", 0, 0,
-      "what heights are measured from: ring is the median of the points around each cluster, "
-      "surface "
-      "the ground that is spanned under rocks and over holes");
-  key("max_ground_cells", detect.max_ground_cells, "cells", 64, 1 << 26,
-      "largest raster of the ground's surface; a wider cloud gets larger cells. Sets the memory "
-      "taken at start");
-  key("ground_cell", detect.ground_cell, "m", 0.01, 10,
-      "edge of its cells: smaller follows the ground closer and needs denser points");
-  key("ground_points", detect.ground_points, "points", 1, 1000,
-      "least mean number of points in the cells that have any; a sparser cloud gets larger cells");
-  key("ground_slope", detect.ground_slope, "m/m", 0.01, 100,
-      "steeper cells are no ground: lower finds flatter obstacles and more slopes of the ground");
-  key("ground_tolerance", detect.ground_tolerance, "m", 0.001, 10,
-      "a smooth patch this close to the continuation of the ground belongs to it");
-  key("ground_trend", detect.ground_trend, "m", 0, 100,
-      "the ground goes on as it runs on the whole within this distance, for clouds that have gaps; "
-      "0: level. Larger spans wider gaps, smaller follows hills");
-  key("candidates", detect.candidates, "", 0, 0,
-      "what clusters are made of: edges are the steep points (paper), bodies all points above or "
-      "below the ground's surface");
-  key("body_height", detect.body_height, "m", 0, 10,
-      "least height above or depth below the surface of a body's points");
-  key("kernel_spacing", detect.kernel_spacing, "m", 0.001, 10,
-      "d of the Sobel operator: distance of the eight positions around a point (paper fig. 3)");
-  key("kernel_radius", detect.kernel_radius, "m", 0.001, 10,
-      "r: reach of the kernel estimate at each position (eq. 4); not equal to kernel_spacing, or "
-      "rounding decides which points lie inside");
-  key("kernel_bandwidth", detect.kernel_bandwidth, "r", 0.05, 100,
-      "standard deviation of the kernel in units of kernel_radius; the paper prints 2 (eq. 3)");
-  key("kernel_neighbours", detect.kernel_neighbours, "points", 1, 1000,
-      "least points at each of the eight positions for a gradient: more means fewer gradients on "
-      "sparse ground, and better ones");
-  key("kernel_shared", detect.kernel_shared, "m", 0, 1,
-      "points nearer to one another in the plane share a gradient: faster where points stand above "
-      "one another; 0: each has its own");
-  key("edge_threshold", detect.edge_threshold, "m/m", 0, 100,
-      "least slope of an edge point: lower finds flatter obstacles and more slopes of the ground");
-  key("suppression", detect.suppression, "", 0, 0,
-      "keep only points that are steepest along their gradient (paper fig. 4)");
-  key("suppression_distance", detect.suppression_distance, "m", 0.001, 10,
-      "distance of the two positions that a point is compared with");
-  key("suppression_radius", detect.suppression_radius, "m", 0.001, 10,
-      "reach of the mean at each of the two positions");
-  key("cluster_method", detect.cluster_method, "", 0, 0,
-      "supervoxel clusters the centres of super-voxels (algorithm 2), euclidean the edge points "
-      "themselves (algorithm 1, the baseline), regions the bodies on the raster of the ground: "
-      "seen "
-      "ground parts them, unseen ground does not");
-  key("saddle", detect.saddle, "", 0, 1,
-      "two tops of a region are two bodies where the saddle between them is lower than this share "
-      "of the lower top, heights weighed by the beams that end there; 0: never");
-  key("voxel_size", detect.voxel_size, "m", 0.001, 10, "voxels that super-voxels are made of");
-  key("seed_distance", detect.seed_distance, "m", 0.001, 10,
-      "Rseed: grid of the super-voxels' seeds; the paper's 0.05 needs a far denser cloud");
-  key("reflectivity_weight", detect.reflectivity_weight, "", 0, 1000,
-      "wc of the metric D: how much a change of reflectivity parts super-voxels");
-  key("spatial_weight", detect.spatial_weight, "", 0, 1000, "ws of the metric D: compactness");
-  key("normal_weight", detect.normal_weight, "", 0, 1000,
-      "wn of the metric D: how much a change of direction parts super-voxels");
-  key("min_block_points", detect.min_block_points, "points", 1, 100000,
-      "super-voxels with fewer points are noise and go; the paper has 6, on a denser cloud");
-  key("cluster_tolerance", detect.cluster_tolerance, "m", 0.001, 10,
-      "centres (or edge points) closer than this belong together: larger merges close obstacles, "
-      "smaller splits rims");
-  key("min_cluster_size", detect.min_cluster_size, "", 1, 100000,
-      "least number of super-voxels (or of points, but with supervoxel) of an obstacle");
-  key("ground_inner", detect.ground_inner, "m", 0, 10,
-      "the ground's height is taken from this far around a cluster's box ...");
-  key("ground_outer", detect.ground_outer, "m", 0.001, 20, "... to this far");
-  key("network", detect.network, "", 0, 0, "file of the trained network's weights");
-  key("min_confidence", detect.min_confidence, "", 0, 1,
-      "least answer of the network for an obstacle: higher means fewer ghosts and more misses");
-}
-
-/// Calls visit(Key, value&) for every configuration key there is: the one table of them.
+/// Calls visit(Key, value&) for every configuration key there is, live or not: the one table of
+/// them.
 template <class AnySettings, class Visit>
-void for_each_key(AnySettings& settings, Visit&& visit) {
+void for_every_key(AnySettings& settings, Visit&& visit) {
   std::string_view table;
   const auto key = [&](std::string_view name, auto& value, std::string_view unit, double low,
                        double high, std::string_view meaning) {
@@ -143,8 +38,7 @@ void for_each_key(AnySettings& settings, Visit&& visit) {
   key("baud", imu.baud, "bit/s", 4800, 4000000, "its bit rate");
   key("configure", imu.configure, "", 0, 0,
       "set up its bit rate and its outputs at start; with false it is taken as it is and nothing "
-      "is "
-      "sent to it");
+      "is sent to it");
   key("rate", imu.rate, "Hz", 100, 400,
       "orientations, accelerations and rates a second: more follows fast motion better and needs a "
       "faster line");
@@ -160,8 +54,7 @@ void for_each_key(AnySettings& settings, Visit&& visit) {
   key("interface", encoder.interface, "", 0, 0, "SocketCAN interface of the wheel encoder");
   key("dbc", encoder.dbc, "", 0, 0,
       "DBC file that says where the signal lies, beside this file; empty: the keys can_id to "
-      "signed "
-      "say it");
+      "signed say it");
   key("signal", encoder.signal, "", 0, 0, "its signal there: MESSAGE.SIGNAL");
   key("can_id", encoder.can_id, "", 0, 0x1FFFFFFF,
       "identifier of its frame; above 0x7FF: an extended (29-bit) one");
@@ -179,15 +72,13 @@ void for_each_key(AnySettings& settings, Visit&& visit) {
       "readings that ask for a faster wheel are refused, and counted");
   key("max_acceleration", encoder.max_acceleration, "m/s^2", 0.1, 1000,
       "the same for a wheel that gains or loses speed faster; it spins up and is blocked faster "
-      "than "
-      "the robot, so leave room");
+      "than the robot, so leave room");
 
   table = "gpio";
   auto& gpio = settings.gpio;
   key("pps", gpio.pps, "", 0, 0,
       "line on which a GPS receiver's pulse per second arrives, CHIP:LINE as gpiochip0:18, the "
-      "line "
-      "by number or name; empty: none");
+      "line by number or name; empty: none");
   key("pps_active_low", gpio.pps_active_low, "", 0, 0, "the second begins where its level falls");
   key("stop", gpio.stop, "", 0, 0,
       "line that is on while the robot is blind or an obstacle is in the stop zone; empty: none");
@@ -209,8 +100,7 @@ void for_each_key(AnySettings& settings, Visit&& visit) {
   auto& map = settings.map;
   key("wait", map.wait, "s", 0, 1,
       "a sweep waits this long for the IMU and encoder samples that cover it: longer bears a "
-      "busier "
-      "host, and delays lists while a sensor is slow");
+      "busier host, and delays lists while a sensor is slow");
   key("registration", map.registration, "", 0, 0,
       "correct the pose by laying each sweep onto the ground seen before; false: dead reckoning "
       "alone");
@@ -224,13 +114,7 @@ void for_each_key(AnySettings& settings, Visit&& visit) {
       "gathers what will be needed");
   key("keep_seconds", map.keep_seconds, "s", 1, 86400,
       "what was not seen for so long is forgotten: longer keeps more behind corners, and more of "
-      "the "
-      "pose's drift");
-  key("max_points", map.max_points, "points", 1, 1 << 20,
-      "longest sweep; points beyond it are dropped and counted. Sets the memory taken at start");
-  key("max_voxels", map.max_voxels, "voxels", 1024, 1 << 24,
-      "largest map; points without a voxel are dropped and counted. Sets the memory taken at "
-      "start");
+      "the pose's drift");
 
   for_each_detect_key("detect.cloud", settings.detect_cloud, visit);
   for_each_detect_key("detect.map", settings.detect_map, visit);
@@ -256,6 +140,35 @@ void for_each_key(AnySettings& settings, Visit&& visit) {
   table = "lcm";
   key("url", settings.lcm.url, "", 0, 0,
       "LCM provider; ttl=0 stays on this computer, ttl=1 reaches the local network");
+
+  table = "memory";
+  auto& memory = settings.memory;
+  key("sweep_points", memory.sweep_points, "points", 2, 1 << 20,
+      "longest sweep; points beyond it are dropped and counted");
+  key("map_voxels", memory.map_voxels, "voxels", 1024, 1 << 24,
+      "largest map; points without a voxel are dropped and counted");
+  key("cloud_points", memory.cloud_points, "points", 4, 1 << 26,
+      "a longer cloud of `scree detect` takes the memory that it needs");
+  key("ground_cells", memory.ground_cells, "cells", 64, 1 << 26,
+      "largest raster of the ground's surface; a wider cloud gets larger cells");
+  key("obstacles", memory.obstacles, "obstacles", 1, 65536,
+      "longest obstacle list; further ones are dropped and counted");
 }
+
+/// The same for the keys that are read as things are set.
+template <class AnySettings, class Visit>
+void for_each_key(AnySettings& settings, Visit&& visit) {
+  for_every_key(settings, [&](const Key& key, auto& value) {
+    if (key.is_live) visit(key, value);
+  });
+}
+
+/// The shipped file in which a key stands: scree.toml for what a robot's owner sets, else the
+/// profile of the part that it tunes.
+std::string_view file_of(const Key& key);
+inline constexpr std::string_view kOwnersFile = "scree.toml";
+/// In the order in which they are read.
+inline constexpr std::array<std::string_view, 3> kProfiles = {"cloud.toml", "map.toml",
+                                                              "sweep.toml"};
 
 }  // namespace scree

@@ -17,13 +17,11 @@ namespace scree {
 enum class LidarModel : std::uint8_t { vlp16, puck_lite, puck_hires };
 enum class ByteOrder : std::uint8_t { little_endian, big_endian };
 enum class EncoderKind : std::uint8_t { counter, speed };
-/// What heights are measured from: the median of a ring around each cluster (the paper's way, as
-/// far as it says), or the ground's surface under it.
-enum class GroundReference : std::uint8_t { ring, surface };
-/// Which points clusters are made of: the paper's edge points, or all that stand above or lie below
-/// the ground's surface.
-enum class Candidates : std::uint8_t { edges, bodies };
-enum class ClusterMethod : std::uint8_t { supervoxel, euclidean, regions };
+/// How obstacles are looked for: edges is the paper's method, clusters of steep points; surface is
+/// ours, clusters of what stands above the ground's surface or lies below it.
+enum class Method : std::uint8_t { edges, surface };
+enum class EdgeClustering : std::uint8_t { supervoxel, euclidean };
+enum class SurfaceClustering : std::uint8_t { regions, euclidean };
 
 /// The words for an enum in a configuration file.
 template <class Enum>
@@ -42,18 +40,17 @@ inline constexpr std::array kNames<EncoderKind> = {
     std::pair{std::string_view("counter"), EncoderKind::counter},
     std::pair{std::string_view("speed"), EncoderKind::speed}};
 template <>
-inline constexpr std::array kNames<GroundReference> = {
-    std::pair{std::string_view("ring"), GroundReference::ring},
-    std::pair{std::string_view("surface"), GroundReference::surface}};
+inline constexpr std::array kNames<Method> = {
+    std::pair{std::string_view("edges"), Method::edges},
+    std::pair{std::string_view("surface"), Method::surface}};
 template <>
-inline constexpr std::array kNames<Candidates> = {
-    std::pair{std::string_view("edges"), Candidates::edges},
-    std::pair{std::string_view("bodies"), Candidates::bodies}};
+inline constexpr std::array kNames<EdgeClustering> = {
+    std::pair{std::string_view("supervoxel"), EdgeClustering::supervoxel},
+    std::pair{std::string_view("euclidean"), EdgeClustering::euclidean}};
 template <>
-inline constexpr std::array kNames<ClusterMethod> = {
-    std::pair{std::string_view("supervoxel"), ClusterMethod::supervoxel},
-    std::pair{std::string_view("euclidean"), ClusterMethod::euclidean},
-    std::pair{std::string_view("regions"), ClusterMethod::regions}};
+inline constexpr std::array kNames<SurfaceClustering> = {
+    std::pair{std::string_view("regions"), SurfaceClustering::regions},
+    std::pair{std::string_view("euclidean"), SurfaceClustering::euclidean}};
 
 template <class Enum>
 constexpr std::string_view name_of(Enum value) {
@@ -147,8 +144,6 @@ struct MapSettings {
   double reach = 18;
   double search_reach = 12;
   double keep_seconds = 60;
-  int max_points = 1 << 16;
-  int max_voxels = 1 << 19;
 };
 
 /// Obstacles followed from list to list.
@@ -166,42 +161,24 @@ struct TrackingSettings {
   double reach = 10;
 };
 
-/// The stages of the paper and ours beside them. There is one set for reconstructed clouds, one for
-/// the map that grows while driving, and one for single sweeps, because every length follows the
-/// density of the points.
-struct DetectSettings {
-  int max_points = 1 << 20;
-  int max_edge_points = 1 << 18;
-  int max_obstacles = 256;
+/// Gaussian-kernel Sobel operator (paper eq. 1-4).
+struct KernelSettings {
+  double spacing = 0.10;
+  double radius = 0.11;
+  double bandwidth = 2.0;
+  int neighbours = 1;
+};
 
-  bool voxel_grid = true;
-  double leaf_size = 0.0592;
-  double clearance = 2.0;
-
-  GroundReference ground = GroundReference::ring;
-  int max_ground_cells = 1 << 19;
-  double ground_cell = 0.08;
-  double ground_points = 2.15;
-  double ground_slope = 0.34;
-  double ground_tolerance = 0.10;
-  double ground_trend = 0;
-
-  Candidates candidates = Candidates::edges;
-  double body_height = 0.06;
-
-  double kernel_spacing = 0.10;
-  double kernel_radius = 0.11;
-  double kernel_bandwidth = 2.0;
-  int kernel_neighbours = 1;
-  double kernel_shared = 0;
-  double edge_threshold = 0.35;
+/// The paper's method; the defaults are its own, on clouds as dense as the paper's.
+struct EdgeSettings {
+  KernelSettings kernel;
+  double threshold = 0.35;
 
   bool suppression = true;
   double suppression_distance = 0.10;
   double suppression_radius = 0.11;
 
-  ClusterMethod cluster_method = ClusterMethod::supervoxel;
-  double saddle = 0.4;
+  EdgeClustering clustering = EdgeClustering::supervoxel;
   double voxel_size = 0.08;
   double seed_distance = 0.25;
   double reflectivity_weight = 0.1;
@@ -213,19 +190,72 @@ struct DetectSettings {
 
   double ground_inner = 0.15;
   double ground_outer = 0.60;
+};
 
-  std::string network = "network_paper.txt";
+/// Our method; the defaults are for reconstructed clouds.
+struct SurfaceSettings {
+  double ground_cell = 0.08;
+  double ground_points = 2.15;
+  double ground_slope = 0.34;
+  double ground_tolerance = 0.10;
+  double ground_trend = 0;
+
+  double body_height = 0.06;
+  KernelSettings kernel;
+  double kernel_shared = 0;
+
+  SurfaceClustering clustering = SurfaceClustering::euclidean;
+  double saddle = 0.4;
+  double cluster_tolerance = 0.20;
+  int min_cluster_size = 4;
+};
+
+/// There is one set for reconstructed clouds, one for the map that grows while driving, and one for
+/// single sweeps, because every length follows the density of the points. Of the two methods'
+/// settings only those of `method` count.
+struct DetectSettings {
+  Method method = Method::surface;
+  double leaf_size = 0.0592;
+  double clearance = 2.0;
+  EdgeSettings edges;
+  SurfaceSettings surface;
+  std::string network;
   double min_confidence = 0.5;
 
-  bool uses_surface() const {
-    return ground == GroundReference::surface || candidates == Candidates::bodies;
-  }
-
-  /// The method as the paper has it, on clouds as dense as the paper's: the defaults above.
-  static DetectSettings for_paper() { return {}; }
+  /// The method as the paper has it, for clouds.
+  static DetectSettings for_paper();
   static DetectSettings for_cloud();
   static DetectSettings for_map();
   static DetectSettings for_sweep();
+};
+
+/// How much a detector has room for.
+struct DetectorLimits {
+  std::size_t points = 0;        ///< of a cloud
+  std::size_t candidates = 0;    ///< points that clusters are made of
+  std::size_t ground_cells = 0;  ///< of the ground's raster
+  std::size_t obstacles = 0;     ///< of a list
+};
+
+/// What the memory is taken for at the start.
+struct MemorySettings {
+  int sweep_points = 1 << 17;
+  int map_voxels = 1 << 19;
+  int cloud_points = 1 << 20;
+  int ground_cells = 1 << 19;
+  int obstacles = 512;
+
+  /// A quarter of a cloud's points leaves room: a fifth were edges in the paper's. A sweep has less
+  /// ground between what stands on it.
+  DetectorLimits for_cloud() const { return limits(cloud_points, 4); }
+  DetectorLimits for_map() const { return limits(map_voxels, 4); }
+  DetectorLimits for_sweep() const { return limits(sweep_points, 2); }
+
+private:
+  DetectorLimits limits(int points, int candidate_share) const {
+    return {static_cast<std::size_t>(points), static_cast<std::size_t>(points / candidate_share),
+            static_cast<std::size_t>(ground_cells), static_cast<std::size_t>(obstacles)};
+  }
 };
 
 struct LcmSettings {
@@ -244,19 +274,15 @@ struct Settings {
   MapSettings map;
   TrackingSettings track;
   LcmSettings lcm;
-
-  /// Of the longest list that is published.
-  int max_obstacles() const {
-    return std::max(detect_map.max_obstacles, detect_sweep.max_obstacles);
-  }
+  MemorySettings memory;
 };
 
 /// The settings of read_configuration().
 Result<Settings> load_settings(const std::filesystem::path& file);
 /// The same from text; `origin` stands for the file's name in errors.
 Result<Settings> parse_settings(std::string_view toml, const std::string& origin);
-/// Every key with its default, unit, range and meaning, as a complete commented TOML file.
-std::string default_settings_toml();
+/// A shipped file, scree.toml or a profile: its keys with default, unit, range and meaning.
+std::string default_toml(std::string_view file);
 
 /// Where a shipped or configured file lies: as given when absolute, else beside the configuration
 /// file, else in <program>/../share/scree.

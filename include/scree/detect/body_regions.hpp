@@ -34,7 +34,8 @@ public:
 
   /// Region of each point, numbered from 0.
   std::span<const std::uint32_t> labels() const { return labels_; }
-  std::size_t count() const { return count_; }
+  /// Points of each region.
+  std::span<const std::uint32_t> sizes() const { return sizes_; }
 
 private:
   enum State : std::uint8_t { unseen, clear, loose, firm };
@@ -52,8 +53,7 @@ private:
   KeySort order_;                       // cells of bodies, the highest first
   FixedVector<std::uint32_t> parent_;   // union-find over them; a root is its region's top
   FixedVector<std::uint32_t> number_;   // of the region whose root a cell is
-  FixedVector<std::uint32_t> labels_;
-  std::size_t count_ = 0;
+  FixedVector<std::uint32_t> labels_, sizes_;
 };
 
 }  // namespace scree

@@ -9,7 +9,7 @@
 
 namespace scree {
 
-/// Edge points that belong together, and what the network is told of them.
+/// Points that belong together, and what the network is told of them.
 struct Cluster {
   std::uint32_t begin = 0, end = 0;  ///< its points in Clusters::members()
   std::uint32_t size = 0;            ///< super-voxels, or points where there are none
@@ -41,6 +41,13 @@ public:
 private:
   FixedVector<Cluster> clusters_;
   FixedVector<std::uint32_t> members_, place_;
+};
+
+/// What a method hands on: clusters, and the points that they are made of. Valid until the method's
+/// next call.
+struct ClusteredPoints {
+  const EdgePoints& points;
+  const Clusters& clusters;
 };
 
 /// F1-F5 of the paper (section 3.2, fig. 8), from the points' own heights. The normal n at a

@@ -8,8 +8,8 @@
 
 namespace scree {
 
-/// Euclidean clustering (paper algorithm 1): points closer than a tolerance belong together, and so
-/// does whatever a chain of such points joins.
+/// Euclidean clustering on a grid (the result is that of paper algorithm 1): points closer than a
+/// tolerance belong together, and so does whatever a chain of such points joins.
 class EuclideanClusters {
 public:
   explicit EuclideanClusters(std::size_t max_points);
@@ -23,16 +23,16 @@ public:
 
   /// Cluster of each point, numbered from 0 in the order of their first points.
   std::span<const std::uint32_t> labels() const { return labels_; }
-  std::size_t count() const { return count_; }
+  /// Points of each cluster.
+  std::span<const std::uint32_t> sizes() const { return sizes_; }
 
 private:
   void join_cells(PointView points, float square, std::size_t a, std::size_t b);
 
   SpaceCells cells_;
   FixedVector<std::uint32_t> parent_;  // union-find over the occupied cells
-  FixedVector<std::uint32_t> labels_;
+  FixedVector<std::uint32_t> labels_, sizes_;
   FixedVector<std::uint32_t> label_of_root_;
-  std::size_t count_ = 0;
 };
 
 }  // namespace scree

@@ -8,9 +8,6 @@
 
 namespace scree {
 
-/// What no super-voxel or cluster has taken.
-inline constexpr std::uint32_t kNoLabel = UINT32_MAX;
-
 /// Weights and lengths of the metric D = sqrt(wc Dc^2 + ws Ds^2 / (3 Rseed^2) + wn Dn^2).
 struct SupervoxelSettings {
   float voxel_size;           ///< edge of a voxel, metres

@@ -24,7 +24,7 @@ namespace scree {
 /// go through; what beams pass through again and again is forgotten.
 class RollingMap {
 public:
-  explicit RollingMap(const MapSettings& settings);
+  RollingMap(const MapSettings& settings, std::size_t max_voxels);
 
   /// Adds a sweep that ended at `end_ns`, seen from `pose` (`base` in the map's frame), and
   /// forgets.

@@ -14,8 +14,8 @@ constexpr double kSweep = 0.1;
 Settings small_settings() {
   Settings settings;
   settings.lidar = test::usual_lidar();
-  settings.map.max_points = 1 << 13;
-  settings.map.max_voxels = settings.detect_map.max_points = 1 << 16;
+  settings.memory.sweep_points = 1 << 13;
+  settings.memory.map_voxels = 1 << 16;
   settings.detect_map.min_confidence = 0;
   return settings;
 }
@@ -24,9 +24,7 @@ Settings small_settings() {
 class PipelineMap : public testing::Test {
 protected:
   explicit PipelineMap(const Settings& settings = small_settings())
-      : settings_(settings),
-        pipeline_(settings, Detector(settings.detect_map, Network()),
-                  Detector(settings.detect_sweep, Network())) {}
+      : settings_(settings), pipeline_(settings, Networks()) {}
 
   const ObstacleList& go(int sweeps, bool speaks = true) {
     const ObstacleList* list = nullptr;
@@ -64,8 +62,9 @@ protected:
   static Settings all_edges() {
     Settings settings = small_settings();
     settings.detect_sweep.min_confidence = 0;
-    settings.detect_sweep.edge_threshold = 0.1;
-    settings.detect_sweep.min_block_points = settings.detect_sweep.min_cluster_size = 1;
+    settings.detect_sweep.edges.threshold = 0.1;
+    settings.detect_sweep.edges.min_block_points = 1;
+    settings.detect_sweep.edges.min_cluster_size = 1;
     settings.track.appear = settings.track.disappear = 0;
     return settings;
   }
@@ -197,7 +196,7 @@ protected:
   PipelineMapTooSmall() : PipelineMap(few_points()) {}
   static Settings few_points() {
     Settings settings = small_settings();
-    settings.map.max_points = 1000;
+    settings.memory.sweep_points = 1000;
     return settings;
   }
 };
@@ -215,8 +214,7 @@ TEST(PipelineMapAgain, GivesTheSameListsOnEveryRun) {
   const test::SimpleDrive drive = test::helix(1, 0.2, 0);
   std::vector<std::vector<double>> runs(2);
   for (std::vector<double>& values : runs) {
-    Pipeline pipeline(settings, Detector(settings.detect_map, Network()),
-                      Detector(settings.detect_sweep, Network()));
+    Pipeline pipeline(settings, Networks());
     Sweep sweep(1 << 13);
     drive.put_imu(pipeline.sensors(), 0, 1.2);
     drive.put_wheel(pipeline.sensors(), 0, 1.2);

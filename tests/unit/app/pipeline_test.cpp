@@ -12,8 +12,7 @@ namespace scree {
 namespace {
 
 Pipeline pipeline_of(const Settings& settings) {
-  return {settings, Detector(settings.detect_map, Network()),
-          Detector(settings.detect_sweep, Network())};
+  return {settings, Networks()};
 }
 
 Sweep sweep_of(std::initializer_list<Eigen::Vector3f> points) {
@@ -49,7 +48,7 @@ TEST(Pipeline, LeavesOutWhatIsTooNearOrTooFar) {
 
 TEST(Pipeline, CountsPointsBeyondItsMemory) {
   Settings settings;
-  settings.detect_sweep.max_points = settings.detect_sweep.max_edge_points = 2;
+  settings.memory.sweep_points = 2;
   Pipeline pipeline = pipeline_of(settings);
   pipeline.process(sweep_of({{1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}}));
   EXPECT_EQ(pipeline.counts().input, 4U);

@@ -70,15 +70,48 @@ TEST_F(ConfigurationTest, EffectiveTextReadsBackToTheSameText) {
   folder_.write("scree.d/robot.toml", "[encoder]\ncan_id = 0x18FF1234\n");
   const auto read = read_configuration(file);
   ASSERT_TRUE(read) << read.error().message;
-  const std::string all = effective_toml(*read, false), set = effective_toml(*read, true);
+  const std::string all = effective_toml(*read, Shown::all),
+                    set = effective_toml(*read, Shown::set),
+                    owners = effective_toml(*read, Shown::owners);
   EXPECT_THAT(all, AllOf(HasSubstr("port = 4000 "), HasSubstr("# default")));
   EXPECT_THAT(set, AllOf(HasSubstr("can_id = 0x18FF1234"), HasSubstr("robot.toml:2"),
                          Not(HasSubstr("# default")), Not(HasSubstr("[imu]"))));
-  for (const std::string& text : {all, set}) {
+  EXPECT_THAT(owners, AllOf(HasSubstr("[imu]"), Not(HasSubstr("[detect.map]"))));
+  for (const std::string& text : {all, owners, set}) {
     const auto again = parse_settings(text, "again");
     ASSERT_TRUE(again) << again.error().message;
-    EXPECT_EQ(effective_toml({*again, {}}, false), effective_toml({read->settings, {}}, false));
+    EXPECT_EQ(toml_values(*again), toml_values(read->settings));
   }
+}
+
+TEST_F(ConfigurationTest, AProfileBesideTheFileIsReadInsteadOfTheShippedOne) {
+  folder_.write("map.toml",
+                "[detect.map]\nsaddle = 0.4\nbody_height = 0.09\n[track]\nsmoothing = 0.5\n");
+  const auto file = write("[track]\nsmoothing = 0.6\n");
+  const auto read = read_configuration(file);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->settings.detect_map.surface.body_height, 0.09);
+  EXPECT_EQ(read->settings.track.smoothing, 0.6) << "the file goes over it";
+  EXPECT_THAT(read->source_of("detect.map.body_height").text(), EndsWith("map.toml:3"));
+  EXPECT_TRUE(read->source_of("detect.map.saddle").is_default()) << "it says what holds anyway";
+  const std::string set = effective_toml(*read, Shown::set);
+  EXPECT_THAT(set, AllOf(HasSubstr("body_height = 0.09"), HasSubstr("smoothing = 0.6"),
+                         Not(HasSubstr("saddle"))));
+  folder_.write("map.toml", "[detect.map]\nseed_distance = 0.4\n");
+  EXPECT_THAT(error_of(file), AllOf(HasSubstr("map.toml:2: detect.map.seed_distance"),
+                                    HasSubstr("method = \"edges\"")));
+}
+
+TEST_F(ConfigurationTest, AMethodChosenLaterLeavesNoKeyUnreadInSilence) {
+  const auto file = write("[detect.cloud]\nbody_height = 0.1\n");
+  EXPECT_EQ(error_of(file), "no error");
+  folder_.write("scree.d/robot.toml",
+                "[detect.cloud]\nmethod = \"edges\"\nnetwork = \"network_paper.txt\"\n");
+  EXPECT_THAT(error_of(file), AllOf(HasSubstr("scree.toml:2: detect.cloud.body_height"),
+                                    HasSubstr("was set for method = \"surface\"")));
+  write("[detect.cloud]\nkernel_spacing = 0.1\n");
+  EXPECT_THAT(error_of(file), HasSubstr("scree.toml:2: detect.cloud.kernel_spacing"))
+      << "of a name that both methods have";
 }
 
 }  // namespace

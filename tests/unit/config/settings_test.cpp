@@ -3,10 +3,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <spdlog/fmt/fmt.h>
+
+#include <array>
 #include <cstdlib>
 #include <fstream>
+#include <set>
 #include <sstream>
 
+#include "scree/config/configuration.hpp"
 #include "scree/config/keys.hpp"
 #include "unit/temporary_folder.hpp"
 
@@ -64,10 +69,10 @@ TEST(Settings, MistakesNameFileLineKeyAndWhatIsAccepted) {
   EXPECT_THAT(error_of("[lidar\n"), HasSubstr("robot.toml:1"));
   EXPECT_THAT(error_of("[lidar]\nmin_range = 31\n"), HasSubstr("below lidar.max_range"));
   EXPECT_THAT(error_of("[lidar]\nmax_range = nan\n"), HasSubstr("out of range"));
-  EXPECT_THAT(error_of("[detect.cloud]\nground_inner = 5\n"),
+  EXPECT_THAT(error_of("[detect.sweep]\nground_inner = 5\n"),
               AllOf(HasSubstr("robot.toml:2"), HasSubstr("ground_outer")));
-  EXPECT_THAT(error_of("[detect.map]\n\nground = \"ring\"\ncandidates = \"edges\"\n"),
-              AllOf(HasSubstr("robot.toml:3"), HasSubstr("\"regions\" needs")));
+  EXPECT_THAT(error_of("[detect.map]\n\nleaf_size = 0.0001\n"),
+              AllOf(HasSubstr("robot.toml:3"), HasSubstr("must be 0 or at least 0.001")));
   EXPECT_THAT(error_of("[lidar]\nport = 1\nport = 2\n"),
               AllOf(HasSubstr("robot.toml:3"), HasSubstr("port")));
 }
@@ -110,37 +115,84 @@ TEST(FindFile, LooksBesideTheConfigurationThenBesideTheProgram) {
   EXPECT_THAT(missing.error().message, HasSubstr("cannot find nowhere.txt"));
 }
 
-TEST(Settings, DefaultFileReadsBackAndIsStable) {
-  const std::string text = default_settings_toml();
-  const auto settings = parse_settings(text, "default");
-  ASSERT_TRUE(settings) << settings.error().message;
+constexpr std::array kShippedFiles = {kOwnersFile, kProfiles[0], kProfiles[1], kProfiles[2]};
+
+TEST(Settings, DefaultFilesReadBackToTheDefaults) {
+  for (const std::string_view file : kShippedFiles) {
+    const auto settings = parse_settings(default_toml(file), std::string(file));
+    ASSERT_TRUE(settings) << settings.error().message;
+    EXPECT_EQ(toml_values(*settings), toml_values(Settings()));
+  }
+}
+
+TEST(Settings, EachKeyStandsInOneShippedFile) {
+  std::multiset<std::string> written, keys;
+  for (const std::string_view file : kShippedFiles) {
+    std::istringstream lines{default_toml(file)};
+    std::string table;
+    for (std::string line; std::getline(lines, line);) {
+      if (line.starts_with("[")) table = line.substr(1, line.size() - 2);
+      if (line.empty() || line.starts_with("#") || line.starts_with("[")) continue;
+      written.insert(table + "." + line.substr(0, line.find(' ')));
+    }
+  }
+  const Settings defaults;
+  for_each_key(defaults, [&](const Key& key, const auto&) { keys.insert(full_name(key)); });
+  EXPECT_EQ(written, keys);
 }
 
 TEST(Settings, ShippedPaperFileIsThePapersMethod) {
   const auto settings = load_settings(std::string(SCREE_SOURCE) + "/config/paper.toml");
   ASSERT_TRUE(settings) << settings.error().message;
-  const auto text_of = [](DetectSettings detect) {
-    std::ostringstream text;
-    for_each_detect_key("detect.cloud", detect, [&](const Key& key, const auto& value) {
-      text << key.name << ' ';
-      if constexpr (std::is_enum_v<std::decay_t<decltype(value)>>) {
-        text << name_of(value) << '\n';
-      } else {
-        text << value << '\n';
-      }
-    });
-    return text.str();
-  };
-  EXPECT_EQ(text_of(settings->detect_cloud), text_of(DetectSettings::for_paper()));
+  Settings paper;
+  paper.detect_cloud = DetectSettings::for_paper();
+  EXPECT_EQ(toml_values(*settings), toml_values(paper));
 }
 
-/// The shipped file is this very text; SCREE_UPDATE=1 in the environment writes it anew.
-TEST(Settings, ShippedFileIsTheDefaults) {
-  const std::string shipped = std::string(SCREE_SOURCE) + "/config/scree.toml";
-  if (std::getenv("SCREE_UPDATE") != nullptr) std::ofstream(shipped) << default_settings_toml();
-  std::ostringstream text;
-  text << std::ifstream(shipped).rdbuf();
-  EXPECT_EQ(text.str(), default_settings_toml());
+/// The shipped files are these very texts; SCREE_UPDATE=1 in the environment writes them anew.
+TEST(Settings, ShippedFilesAreTheDefaults) {
+  for (const std::string_view file : kShippedFiles) {
+    const std::string shipped = fmt::format("{}/config/{}", SCREE_SOURCE, file);
+    if (std::getenv("SCREE_UPDATE") != nullptr) std::ofstream(shipped) << default_toml(file);
+    std::ostringstream text;
+    text << std::ifstream(shipped).rdbuf();
+    EXPECT_EQ(text.str(), default_toml(file));
+  }
+}
+
+TEST(Settings, AKeyOfAnotherMethodIsAnErrorThatSaysSo) {
+  EXPECT_THAT(error_of("[detect.cloud]\nedge_threshold = 0.3\n"),
+              HasSubstr(":2: detect.cloud.edge_threshold is read only with method = \"edges\""));
+  EXPECT_THAT(error_of("[detect.cloud]\nsaddle = 0.3\n"),
+              HasSubstr("detect.cloud.saddle is read only with cluster_method = \"regions\""));
+  EXPECT_THAT(error_of("[detect.sweep]\nsuppression_radius = 0.3\n"),
+              HasSubstr("is read only with suppression = true"));
+  EXPECT_THAT(error_of("[detect.map]\ncluster_method = \"supervoxel\"\n"),
+              HasSubstr("must be one of \"regions\", \"euclidean\""));
+  EXPECT_EQ(error_of("[detect.cloud]\nsaddle = 0.3\ncluster_method = \"regions\"\n"), "no error");
+  EXPECT_EQ(error_of("[detect.cloud]\nmethod = \"edges\"\nedge_threshold = 0.3\n"), "no error");
+  const auto settings =
+      parse_settings("[detect.cloud]\nkernel_spacing = 0.3\nmethod = \"edges\"\n", "robot.toml");
+  ASSERT_TRUE(settings);
+  EXPECT_EQ(settings->detect_cloud.edges.kernel.spacing, 0.3);
+  EXPECT_EQ(settings->detect_cloud.surface.kernel.spacing, 0.1) << "of a name that both have";
+}
+
+TEST(Settings, AKeyThatIsGoneNamesWhatReplacesIt) {
+  const auto expect = [](const std::string& toml, const char* instead) {
+    EXPECT_THAT(error_of(toml), AllOf(HasSubstr("is gone"), HasSubstr(instead))) << toml;
+  };
+  expect("[map]\nmax_voxels = 1\n", "memory.map_voxels");
+  expect("[map]\nmax_points = 1\n", "memory.sweep_points");
+  expect("[detect.cloud]\nmax_points = 1\n", "memory.cloud_points");
+  for (const std::string table : {"[detect.cloud]", "[detect.map]", "[detect.sweep]"}) {
+    expect(table + "\nmax_edge_points = 1\n", "[memory]");
+    expect(table + "\nmax_obstacles = 1\n", "memory.obstacles");
+    expect(table + "\nmax_ground_cells = 1\n", "memory.ground_cells");
+    expect(table + "\nvoxel_grid = false\n", "leaf_size = 0");
+    expect(table + "\nground = \"ring\"\n", "method = \"edges\"");
+    expect(table + "\ncandidates = \"bodies\"\n", "method = \"surface\"");
+  }
 }
 
 TEST(Settings, DefaultsLieInTheirRanges) {

@@ -8,8 +8,8 @@
 #include <set>
 #include <vector>
 
-#include "scree/detect/detector.hpp"
 #include "scree/detect/euclidean_clusters.hpp"
+#include "scree/detect/surface_method.hpp"
 
 namespace scree {
 namespace {
@@ -36,7 +36,7 @@ protected:
         if (std::abs(z) >= kBody) bodies_.push_back(cloud_, cloud_.size() - 1, 0, 0, z);
       }
     }
-    surface_.build(cloud_, surface_settings(DetectSettings::for_map()));
+    surface_.build(cloud_, ground_surface_of(DetectSettings::for_map().surface));
     solidity_.build(cloud_, beams_, surface_, kBody, 2);
     regions_.label(bodies_, surface_, solidity_, {kTolerance, kSaddle});
   }
@@ -71,7 +71,7 @@ TEST_F(BodyRegionsTest, SeenGroundPartsRocksThatAreNearerThanTheTolerance) {
   look_at([](float x, float y) {
     return std::max(rock(x, y, -0.5F, 0.4F, 0.3F), rock(x, y, 0.5F, 0.4F, 0.3F));
   });
-  EXPECT_EQ(regions_.count(), 2U);
+  EXPECT_EQ(regions_.sizes().size(), 2U);
   EXPECT_NE(label_at(-0.5F, 0), label_at(0.5F, 0));
 }
 
@@ -81,9 +81,9 @@ TEST_F(BodyRegionsTest, WhatWasNotSeenPartsNothing) {
         [gap](float x, float y) { return std::abs(x) < gap / 2 ? NAN : rock(x, y, 0, 0.8F, 0.3F); };
   };
   look_at(with_gap(0.2F));
-  EXPECT_EQ(regions_.count(), 1U);
+  EXPECT_EQ(regions_.sizes().size(), 1U);
   look_at(with_gap(0.6F));
-  EXPECT_EQ(regions_.count(), 2U) << "wider than the tolerance";
+  EXPECT_EQ(regions_.sizes().size(), 2U) << "wider than the tolerance";
 }
 
 TEST_F(BodyRegionsTest, RocksThatTouchArePartedAtTheSaddle) {
@@ -94,10 +94,10 @@ TEST_F(BodyRegionsTest, RocksThatTouchArePartedAtTheSaddle) {
     };
   };
   look_at(two_tops(0.1F));
-  EXPECT_EQ(regions_.count(), 2U);
+  EXPECT_EQ(regions_.sizes().size(), 2U);
   EXPECT_NE(label_at(-0.5F, 0), label_at(0.5F, 0));
   look_at(two_tops(0.3F));
-  EXPECT_EQ(regions_.count(), 1U) << "the saddle is higher than its share of the lower top";
+  EXPECT_EQ(regions_.sizes().size(), 1U) << "the saddle is higher than its share of the lower top";
 }
 
 TEST_F(BodyRegionsTest, RocksRiseOutOfTheGrassThatJoinsThem) {
@@ -109,13 +109,13 @@ TEST_F(BodyRegionsTest, RocksRiseOutOfTheGrassThatJoinsThem) {
     return std::abs(x) < 1 && std::abs(y) < 0.4F ? 0.25F : 0.0F;
   };
   look_at(height);
-  EXPECT_EQ(regions_.count(), 1U) << "nothing is known of the beams";
+  EXPECT_EQ(regions_.sizes().size(), 1U) << "nothing is known of the beams";
   look_at(height, [](float, float) { return BeamCount{20, 0}; });
-  EXPECT_EQ(regions_.count(), 1U) << "a wall between them";
+  EXPECT_EQ(regions_.sizes().size(), 1U) << "a wall between them";
   look_at(height, [&](float x, float y) {
     return is_rock(x, y) ? BeamCount{20, 0} : BeamCount{20, 40};
   });
-  EXPECT_EQ(regions_.count(), 2U);
+  EXPECT_EQ(regions_.sizes().size(), 2U);
   EXPECT_NE(label_at(-0.5F, 0), label_at(0.5F, 0));
 }
 
@@ -130,7 +130,7 @@ TEST_F(BodyRegionsTest, ARockIsPartedFromTheGrassAroundItWhateverItsHeight) {
       return is_rock(x, y) ? BeamCount{20, 0, 0.2F} : BeamCount{20, 0, 1};
     };
     look_at(height, beams);
-    EXPECT_EQ(regions_.count(), 2U) << top;
+    EXPECT_EQ(regions_.sizes().size(), 2U) << top;
     EXPECT_NE(label_at(0, 0), label_at(0.7F, 0)) << top;
     EXPECT_EQ(label_at(-0.7F, 0), label_at(0.7F, 0)) << "grass on both sides, " << top;
   }
@@ -140,14 +140,14 @@ TEST_F(BodyRegionsTest, ALowRidgeOfUnevenHeightStaysWhole) {
   look_at([](float x, float y) {
     return std::abs(y) < 0.15F && std::abs(x) < 1.5F ? 0.11F + 0.04F * std::sin(9 * x) : 0.0F;
   });
-  EXPECT_EQ(regions_.count(), 1U);
+  EXPECT_EQ(regions_.sizes().size(), 1U);
 }
 
 TEST_F(BodyRegionsTest, AHoleAndTheRockOnItsRimAreTwo) {
   look_at([](float x, float y) {
     return rock(x, y, 0.4F, 0.4F, 0.4F) - rock(x, y, -0.4F, 0.4F, 0.4F);
   });
-  EXPECT_EQ(regions_.count(), 2U);
+  EXPECT_EQ(regions_.sizes().size(), 2U);
   EXPECT_NE(label_at(-0.4F, 0), label_at(0.4F, 0));
 }
 
@@ -156,7 +156,7 @@ TEST_F(BodyRegionsTest, HolesAreNotPartedByTheirDepth) {
     const float deep = std::min(-rock(x, y, -0.5F, 0.45F, 0.6F), -rock(x, y, 0.5F, 0.45F, 0.4F));
     return std::abs(x) < 0.5F && std::abs(y) < 0.2F ? std::min(deep, -0.1F) : deep;
   });
-  EXPECT_EQ(regions_.count(), 1U);
+  EXPECT_EQ(regions_.sizes().size(), 1U);
 }
 
 TEST_F(BodyRegionsTest, FarApartItAgreesWithEuclideanClusters) {
@@ -168,7 +168,7 @@ TEST_F(BodyRegionsTest, FarApartItAgreesWithEuclideanClusters) {
   });
   EuclideanClusters euclidean(1 << 16);
   euclidean.cluster(bodies_.points, kTolerance);
-  ASSERT_EQ(regions_.count(), euclidean.count());
+  ASSERT_EQ(regions_.sizes().size(), euclidean.sizes().size());
   std::map<std::uint32_t, std::set<std::uint32_t>> partners;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     partners[euclidean.labels()[i]].insert(regions_.labels()[i]);
@@ -178,7 +178,7 @@ TEST_F(BodyRegionsTest, FarApartItAgreesWithEuclideanClusters) {
 
 TEST_F(BodyRegionsTest, NothingGivesNoRegion) {
   look_at([](float, float) { return 0.0F; });
-  EXPECT_EQ(regions_.count(), 0U);
+  EXPECT_EQ(regions_.sizes().size(), 0U);
   EXPECT_TRUE(regions_.labels().empty());
 }
 

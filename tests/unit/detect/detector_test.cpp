@@ -13,13 +13,8 @@ namespace {
 constexpr float kInf = std::numeric_limits<float>::infinity();
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-DetectSettings small(DetectSettings settings) {
-  settings.max_points = 60'000;
-  settings.max_edge_points = 30'000;
-  settings.max_obstacles = 16;
-  settings.max_ground_cells = 1 << 15;
-  return settings;
-}
+constexpr DetectorLimits kLimits{
+    .points = 60'000, .candidates = 30'000, .ground_cells = 1 << 15, .obstacles = 16};
 
 /// A network that takes more acute than obtuse angles for a positive obstacle, and the other way
 /// round; nothing for a cluster without height or depth.
@@ -43,9 +38,9 @@ struct Found {
   FixedVector<Obstacle> obstacles{16};
 };
 
-Found run(PointView cloud, const DetectSettings& settings) {
+Found run(PointView cloud, const DetectSettings& settings, const DetectorLimits& limits = kLimits) {
   Found found;
-  Detector detector(settings, by_angles());
+  Detector detector(settings, limits, by_angles());
   detector.detect(cloud, found.obstacles);
   found.counts = detector.counts();
   return found;
@@ -54,15 +49,27 @@ Found run(PointView cloud, const DetectSettings& settings) {
 /// The paper's chain, and ours with the ground's surface.
 class EachMethod : public testing::TestWithParam<DetectSettings (*)()> {
 protected:
-  static DetectSettings settings_for_test() { return small(GetParam()()); }
+  static DetectSettings settings_for_test() { return GetParam()(); }
+  /// The method with each of its ways to cluster.
+  static std::vector<DetectSettings> both_clusterings() {
+    std::vector<DetectSettings> both(2, GetParam()());
+    both[0].edges.clustering = EdgeClustering::supervoxel;
+    both[1].edges.clustering = EdgeClustering::euclidean;
+    both[0].surface.clustering = SurfaceClustering::regions;
+    both[1].surface.clustering = SurfaceClustering::euclidean;
+    return both;
+  }
   static Found detect(PointView cloud) { return run(cloud, settings_for_test()); }
-  static Found detect(PointView cloud, const DetectSettings& settings) {
-    return run(cloud, settings);
+  static Found detect(PointView cloud, const DetectSettings& settings,
+                      const DetectorLimits& limits = kLimits) {
+    return run(cloud, settings, limits);
   }
 };
 INSTANTIATE_TEST_SUITE_P(Detector, EachMethod,
                          testing::Values(&DetectSettings::for_paper, &DetectSettings::for_cloud),
-                         [](const auto& method) { return method.index == 0 ? "paper" : "bodies"; });
+                         [](const auto& method) {
+                           return method.index == 0 ? "edges" : "surface";
+                         });
 
 TEST_P(EachMethod, FindsTheBumpAndTheBowl) {
   const PointCloud cloud = test::bump_and_bowl(50'000);
@@ -84,28 +91,29 @@ TEST_P(EachMethod, FindsTheBumpAndTheBowl) {
   EXPECT_EQ(found.obstacles[1].id, 2);
 }
 
-TEST(PaperMethod, TheBaselineAndEverySwitchWork) {
+TEST(EdgeMethod, FindsThemWithoutEachOfTheStagesThatCanBeLeftOut) {
   const PointCloud cloud = test::bump_and_bowl(50'000);
-  for (int switches = 0; switches < 8; ++switches) {
-    DetectSettings settings = small(DetectSettings::for_paper());
-    settings.voxel_grid = (switches & 1) != 0;
-    settings.suppression = (switches & 2) != 0;
-    settings.cluster_method =
-        (switches & 4) != 0 ? ClusterMethod::euclidean : ClusterMethod::supervoxel;
-    if (settings.cluster_method == ClusterMethod::euclidean) settings.min_cluster_size = 30;
+  for (int stages = 0; stages < 8; ++stages) {
+    DetectSettings settings = DetectSettings::for_paper();
+    const bool has_voxel_grid = (stages & 1) != 0;
+    if (!has_voxel_grid) settings.leaf_size = 0;
+    settings.edges.suppression = (stages & 2) != 0;
+    if ((stages & 4) == 0) {
+      settings.edges.clustering = EdgeClustering::euclidean;
+      settings.edges.min_cluster_size = 30;
+    }
     const Found found = run(cloud, settings);
-    EXPECT_EQ(found.obstacles.size(), 2U) << switches;
-    EXPECT_EQ(found.counts.voxels < cloud.size(), settings.voxel_grid) << switches;
-    EXPECT_EQ(found.counts.kept < found.counts.edges, settings.suppression) << switches;
+    EXPECT_EQ(found.obstacles.size(), 2U) << stages;
+    EXPECT_EQ(found.counts.voxels < cloud.size(), has_voxel_grid) << stages;
+    EXPECT_EQ(found.counts.kept < found.counts.candidates, settings.edges.suppression) << stages;
+    EXPECT_EQ(found.counts.blocks > 0, (stages & 4) != 0) << stages;
   }
 }
 
 TEST_P(EachMethod, TwiceTheSameAndNothingAllocatedTheSecondTime) {
   const PointCloud cloud = test::bump_and_bowl(50'000);
-  for (const auto method : {ClusterMethod::supervoxel, ClusterMethod::euclidean}) {
-    DetectSettings settings = settings_for_test();
-    settings.cluster_method = method;
-    Detector detector(settings, by_angles());
+  for (const DetectSettings& settings : both_clusterings()) {
+    Detector detector(settings, kLimits, by_angles());
     FixedVector<Obstacle> first(16), second(16);
     detector.detect(cloud, first);
     const std::size_t before = test::allocations();
@@ -127,14 +135,13 @@ TEST_P(EachMethod, SurvivesCloudsWithNothingInThem) {
   EXPECT_TRUE(detect(cloud).obstacles.empty());
   while (cloud.push_back(1, 2, 3, 4)) {
   }
-  for (const bool voxel_grid : {true, false}) {
-    for (const auto method : {ClusterMethod::supervoxel, ClusterMethod::euclidean}) {
-      DetectSettings settings = settings_for_test();
-      settings.max_points = settings.max_edge_points = 2000;
-      settings.voxel_grid = voxel_grid;
-      settings.cluster_method = method;
-      settings.edge_threshold = 0;
-      const Found found = detect(cloud, settings);
+  DetectorLimits limits = kLimits;
+  limits.points = limits.candidates = 2000;
+  for (const double leaf_size : {0.05, 0.0}) {
+    for (DetectSettings settings : both_clusterings()) {
+      settings.leaf_size = leaf_size;
+      settings.edges.threshold = 0;
+      const Found found = detect(cloud, settings, limits);
       EXPECT_TRUE(found.obstacles.empty());
       EXPECT_EQ(found.counts.dropped, cloud.size() - 2000);
     }
@@ -158,9 +165,9 @@ TEST_P(EachMethod, RefusesWhatIsNotFiniteOrTooFarOut) {
     }
     dirty.push_back(cloud.x[i], cloud.y[i], cloud.z[i], cloud.reflectivity[i]);
   }
-  for (const bool voxel_grid : {true, false}) {
+  for (const double leaf_size : {0.0592, 0.0}) {
     DetectSettings settings = settings_for_test();
-    settings.voxel_grid = voxel_grid;
+    settings.leaf_size = leaf_size;
     const Found found = detect(dirty, settings);
     EXPECT_EQ(found.counts.refused, added);
     EXPECT_EQ(found.obstacles.size(), clean.obstacles.size());
@@ -209,9 +216,9 @@ TEST_P(EachMethod, PassesUnderWhatHangsHighAboveTheGround) {
             detect(covered, settings).counts.voxels);
 }
 
-TEST(BodiesMethod, PointsThatFloatAloneDoNotStretchTheRockBelow) {
+TEST(SurfaceMethod, PointsThatFloatAloneDoNotStretchTheRockBelow) {
   PointCloud cloud = test::bump_and_bowl(50'000);
-  const DetectSettings settings = small(DetectSettings::for_cloud());
+  const DetectSettings settings = DetectSettings::for_cloud();
   const Found clean = run(cloud, settings);
   PointCloud dusty(60'000);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -226,7 +233,7 @@ TEST(BodiesMethod, PointsThatFloatAloneDoNotStretchTheRockBelow) {
   }
 }
 
-TEST(BodiesMethod, RocksAHandApartStayTwo) {
+TEST(SurfaceMethod, RocksAHandApartStayTwo) {
   std::mt19937 random(2);
   std::uniform_real_distribution<float> place(-4, 4);
   PointCloud cloud(50'000);
@@ -238,21 +245,19 @@ TEST(BodiesMethod, RocksAHandApartStayTwo) {
     };
     cloud.push_back(x, y, 0.2F * x + cap(-0.55F) + cap(0.55F), 0);
   }
-  EXPECT_EQ(run(cloud, small(DetectSettings::for_cloud())).obstacles.size(), 2U);
+  EXPECT_EQ(run(cloud, DetectSettings::for_cloud()).obstacles.size(), 2U);
 }
 
 TEST_P(EachMethod, CountsWhatDoesNotFit) {
   const PointCloud cloud = test::bump_and_bowl(60'000);
-  DetectSettings settings = settings_for_test();
-  settings.max_points = 50'000;
-  EXPECT_EQ(detect(cloud, settings).counts.dropped, 10'000U);
-  settings = settings_for_test();
-  settings.max_edge_points = 100;
-  const Found few = detect(cloud, settings);
-  EXPECT_EQ(few.counts.edges_dropped, few.counts.edges - 100);
-  settings = settings_for_test();
-  settings.max_obstacles = 1;
-  Detector detector(settings, by_angles());
+  DetectorLimits limits = kLimits;
+  limits.points = 50'000;
+  EXPECT_EQ(detect(cloud, settings_for_test(), limits).counts.dropped, 10'000U);
+  limits = kLimits;
+  limits.candidates = 100;
+  const Found few = detect(cloud, settings_for_test(), limits);
+  EXPECT_EQ(few.counts.candidates_dropped, few.counts.candidates - 100);
+  Detector detector(settings_for_test(), kLimits, by_angles());
   FixedVector<Obstacle> one(1);
   detector.detect(cloud, one);
   EXPECT_EQ(detector.counts().obstacles, 2U);
@@ -263,12 +268,15 @@ TEST_P(EachMethod, SurvivesExtremeSettings) {
   const PointCloud cloud = test::bump_and_bowl(5'000);
   for (const double length : {0.001, 10.0}) {
     DetectSettings settings = settings_for_test();
-    settings.leaf_size = settings.kernel_spacing = settings.kernel_radius = length;
-    settings.suppression_distance = settings.suppression_radius = length;
-    settings.voxel_size = settings.seed_distance = settings.cluster_tolerance = length;
-    settings.edge_threshold = 0;
+    EdgeSettings& edges = settings.edges;
+    settings.leaf_size = edges.kernel.spacing = edges.kernel.radius = length;
+    edges.suppression_distance = edges.suppression_radius = length;
+    edges.voxel_size = edges.seed_distance = edges.cluster_tolerance = length;
+    edges.threshold = 0;
+    settings.surface.cluster_tolerance = length;
     for (const double bandwidth : {0.05, 100.0}) {
-      settings.kernel_bandwidth = bandwidth;
+      edges.kernel.bandwidth = bandwidth;
+      settings.surface.kernel = edges.kernel;
       const Found found = detect(cloud, settings);
       EXPECT_EQ(found.counts.input, 5'000U);
     }

@@ -28,14 +28,14 @@ PointCloud ground_with(Shape&& shape) {
 /// Features of the largest cluster.
 /// @param beams of each point
 Features features_of(PointView cloud, std::span<const BeamCount> beams = {}) {
-  DetectSettings settings = DetectSettings::for_cloud();
-  settings.max_points = 40'000;
-  settings.max_ground_cells = 1 << 14;
-  Detector detector(settings, Network());
+  Detector detector(
+      DetectSettings::for_cloud(),
+      {.points = 40'000, .candidates = 40'000, .ground_cells = 1 << 14, .obstacles = 16},
+      Network());
   FixedVector<Obstacle> unused(16);
   StageTimer timer;
   detector.detect(cloud, beams, unused, timer);
-  const auto clusters = detector.clusters().all();
+  const auto clusters = detector.clustered().clusters.all();
   EXPECT_FALSE(clusters.empty());
   if (clusters.empty()) return {};
   return std::ranges::max_element(

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "motion/simple_drive.hpp"
+#include "scree/config/settings.hpp"
 
 namespace scree {
 namespace {

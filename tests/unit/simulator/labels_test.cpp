@@ -34,7 +34,7 @@ TerrainFeature feature(int id, std::optional<ObstacleKind> kind, const Footprint
 class Labels : public testing::Test {
 protected:
   static void SetUpTestSuite() {
-    detector_ = new Detector(settings(), Network());
+    detector_ = new Detector(DetectSettings::for_cloud(), kLimits, Network());
     FixedVector<Obstacle> unused(1);
     detector_->detect(test::bump_and_bowl(50'000), unused);
   }
@@ -43,11 +43,11 @@ protected:
     detector_ = nullptr;
   }
 
-  void SetUp() override { ASSERT_EQ(detector_->clusters().all().size(), 2U); }
+  void SetUp() override { ASSERT_EQ(detector_->clustered().clusters.all().size(), 2U); }
 
   static LabelledClusters label(const std::vector<TerrainFeature>& features,
                                 const std::vector<int>& asked = {}) {
-    return label_clusters(*detector_, features, asked);
+    return label_clusters(detector_->clustered(), features, asked);
   }
 
   static std::vector<Label> labels(const std::vector<TerrainFeature>& features) {
@@ -58,13 +58,8 @@ protected:
 
   static constexpr auto kRock = ObstacleKind::positive, kHole = ObstacleKind::negative;
 
-  static DetectSettings settings() {
-    DetectSettings settings = DetectSettings::for_cloud();
-    settings.max_points = 60'000;
-    settings.max_edge_points = 30'000;
-    settings.max_ground_cells = 1 << 15;
-    return settings;
-  }
+  static constexpr DetectorLimits kLimits{
+      .points = 60'000, .candidates = 30'000, .ground_cells = 1 << 15, .obstacles = 256};
 
 private:
   static inline Detector* detector_ = nullptr;
@@ -121,14 +116,15 @@ TEST_F(Labels, PiecesBesideALargerOneAreLeftOut) {
     const float away = std::hypot(cloud.x[i] - kBumpX, cloud.y[i] - 1.5F) / (kRoundRadius / 4);
     if (away < 1) cloud.z[i] += 0.4F * (1 - away * away);
   }
-  Detector detector(settings(), Network());
+  Detector detector(DetectSettings::for_cloud(), kLimits, Network());
   FixedVector<Obstacle> unused(1);
   detector.detect(cloud, unused);
-  ASSERT_EQ(detector.clusters().all().size(), 3U);
+  ASSERT_EQ(detector.clustered().clusters.all().size(), 3U);
   const TerrainFeature rocks = feature(1, kRock, rectangle(kBumpX - 1, -1, kBumpX + 1, 2));
   const auto labels_of = [&](double least_piece) {
     std::vector<Label> labels;
-    const LabelledClusters labelled = label_clusters(detector, {&rocks, 1}, {{1}}, least_piece);
+    const LabelledClusters labelled =
+        label_clusters(detector.clustered(), {&rocks, 1}, {{1}}, least_piece);
     for (const Sample& sample : labelled.samples) labels.push_back(sample.label);
     EXPECT_EQ(labelled.found, 1U);
     return labels;

@@ -16,8 +16,8 @@ constexpr double kSweep = 0.1;
 Settings usual_settings() {
   Settings settings;
   settings.lidar = test::usual_lidar();
-  settings.map.max_points = 1 << 13;
-  settings.map.max_voxels = 1 << 16;
+  settings.memory.sweep_points = 1 << 13;
+  settings.memory.map_voxels = 1 << 16;
   return settings;
 }
 

@@ -120,7 +120,7 @@ TEST_F(RollingMapConfirmation, PointsOfOneSweepDoNotConfirmOneAnother) {
 
 // After hours of standing still, too: counts do not wrap.
 TEST_F(RollingMapConfirmation, StaysConfirmedHoweverOftenItIsSeen) {
-  map_ = RollingMap({.voxel = kVoxel, .reach = 12, .max_voxels = 16});
+  map_ = RollingMap({.voxel = kVoxel, .reach = 12}, 16);
   for (int i = 0; i < 140'000; ++i) {
     see({3, 0, 0});
     end_sweep();

@@ -17,8 +17,9 @@ public:
   static constexpr float kScatter = 0.03F;
 
 protected:
-  MapSettings settings_{.voxel = kVoxel, .reach = 12, .max_voxels = 1 << 16};
-  RollingMap map_{settings_};
+  MapSettings settings_{.voxel = kVoxel, .reach = 12};
+  static constexpr std::size_t kMaxVoxels = 1 << 16;
+  RollingMap map_{settings_, kMaxVoxels};
   DeskewedSweep sweep_{1 << 15};
   Pose pose_;
   std::int64_t now_ns_ = kStart;

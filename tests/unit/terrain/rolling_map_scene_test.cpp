@@ -76,7 +76,7 @@ private:
   }
 
   inline static const Eigen::Vector3d kLidar{0, 0, 1};
-  RollingMap map_{MapSettings{.max_voxels = 1 << 17}};
+  RollingMap map_{MapSettings{}, 1 << 17};
   DeskewedSweep sweep_{1 << 14};
   std::mt19937 random_{31};
   std::uniform_real_distribution<double> chance_{0, 1};

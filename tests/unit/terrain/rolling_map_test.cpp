@@ -80,7 +80,7 @@ TEST_F(RollingMapTest, ASweepsReachIsKept) {
 TEST_F(RollingMapTest, WhatIsFarIsGatheredAndHandedOutOnceItIsNear) {
   settings_.reach = 18;
   settings_.search_reach = 12;
-  map_ = RollingMap(settings_);
+  map_ = RollingMap(settings_, kMaxVoxels);
   const Eigen::Vector3d far(15, 0, 0.5), too_far(19, 0, 0.5);
   for (int i = 0; i < 3; ++i) {
     see(far);
@@ -147,7 +147,7 @@ TEST_F(RollingMapTest, CountsTheBeamsThatEndedInAVoxelAndThoseThatPassedIt) {
   const auto along = (place - lidar).normalized();
   const Eigen::Vector3d beside(0, 0.03, 0), below(0, 0, -0.012);
   const auto beams_of = [&](std::size_t sweeps, const Eigen::Vector3d& farther) {
-    map_ = RollingMap(settings_);
+    map_ = RollingMap(settings_, kMaxVoxels);
     for (std::size_t i = 0; i < sweeps; ++i) {
       see(place);
       see(farther);
@@ -177,7 +177,7 @@ TEST_F(RollingMapTest, CountsTheBeamsThatEndedInAVoxelAndThoseThatPassedIt) {
 }
 
 TEST_F(RollingMapTest, DropsAndCountsWhatFindsNoRoomAndRecovers) {
-  map_ = RollingMap({.voxel = kVoxel, .reach = 7, .max_voxels = 500});
+  map_ = RollingMap({.voxel = kVoxel, .reach = 7}, 500);
   const auto look = [&](double x) {
     for (int i = 0; i < 2; ++i) {
       for (int k = 0; k < 2000; ++k)
@@ -202,7 +202,7 @@ TEST_F(RollingMapTest, DropsAndCountsWhatFindsNoRoomAndRecovers) {
 TEST_F(RollingMapTest, FollowsTheRobotOverKilometres) {
   const Eigen::Vector3d ways[] = {{2, 0, 0}, {-2, 1.1, 0.2}};
   for (const Eigen::Vector3d& way : ways) {
-    map_ = RollingMap(settings_);
+    map_ = RollingMap(settings_, kMaxVoxels);
     pose_ = Pose();
     for (int sweep = 0; sweep < 2000; ++sweep) {
       pose_.translation += way;

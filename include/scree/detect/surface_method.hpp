@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "scree/config/settings.hpp"
+#include "scree/core/beam_count.hpp"
+#include "scree/core/stage_times.hpp"
+#include "scree/detect/body_regions.hpp"
+#include "scree/detect/clusters.hpp"
+#include "scree/detect/edge_points.hpp"
+#include "scree/detect/euclidean_clusters.hpp"
+#include "scree/detect/ground_surface.hpp"
+#include "scree/detect/sloped_cloud.hpp"
+#include "scree/detect/solidity.hpp"
+#include "scree/detect/stage_counts.hpp"
+#include "scree/detect/surroundings.hpp"
+
+namespace scree {
+
+GroundSurfaceSettings ground_surface_of(const SurfaceSettings& settings);
+
+/// Our method: the ground's surface is spanned under rocks and over holes, what stands above it or
+/// lies below it is clustered, and the network is told all features. Memory is taken once, here.
+class SurfaceMethod {
+public:
+  /// @param clearance metres above the ground up to which beams count; 0: any height
+  SurfaceMethod(const SurfaceSettings& settings, double clearance, const DetectorLimits& limits);
+
+  /// Metres from the origin within which its cells can be told apart.
+  float reach() const;
+
+  /// @param points thinned; finite, within reach(), no more of them than the limits say
+  /// @param cloud that they come from, with the beams that came to each of its points; no beams
+  /// where nothing is known of them
+  ClusteredPoints find(const PointCloud& points, PointView cloud, std::span<const BeamCount> beams,
+                       StageCounts& counts, StageTimer& timer);
+
+  // What each stage of the last call gave.
+  const SlopedCloud& sloped() const { return sloped_; }
+  const EdgePoints& candidates() const { return candidates_; }
+  ClusteredPoints result() const { return {kept_, clusters_}; }
+
+private:
+  void build_ground(PointView cloud, std::span<const BeamCount> beams);
+  void leave_out_ground_below_edges();
+  void mark_points_off_ground();
+  void gather_candidates(StageCounts& counts);
+  void cluster(StageCounts& counts);
+  void measure_clusters(const PointCloud& points);
+
+  SurfaceSettings settings_;
+  float highest_;  // metres above the ground
+  std::size_t max_points_, max_candidates_;
+  ElevationGradient gradient_;
+
+  SlopedCloud sloped_;
+  GroundSurface surface_;
+  Solidity solidity_;
+  FixedVector<float> height_;                // above the surface, of each sorted point
+  FixedVector<std::uint8_t> is_off_ground_;  // for each of them
+  EdgePoints candidates_, kept_;
+  EuclideanClusters euclidean_;
+  PointCloud split_;  // for Euclidean clustering
+  std::optional<BodyRegions> regions_;
+  Clusters clusters_;
+  Surroundings surroundings_;
+};
+
+}  // namespace scree

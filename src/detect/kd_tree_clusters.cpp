@@ -1,0 +1,130 @@
+#include "scree/detect/kd_tree_clusters.hpp"
+
+#include <algorithm>
+#include <nanoflann.hpp>
+#include <numeric>
+
+#include "scree/detect/label.hpp"
+
+namespace scree {
+namespace {
+
+/// What nanoflann asks of the points.
+struct TreePoints {
+  PointView points;
+
+  std::size_t kdtree_get_point_count() const { return points.size(); }
+  float kdtree_get_pt(std::size_t i, std::size_t axis) const {
+    return axis == 0 ? points.x[i] : axis == 1 ? points.y[i] : points.z[i];
+  }
+};
+
+using Metric = nanoflann::L2_Simple_Adaptor<float, TreePoints>;
+
+}  // namespace
+
+/// nanoflann builds the tree. Its nodes come from memory taken once, instead of from the pool that
+/// nanoflann's own index frees and takes anew with each cloud.
+class KdTreeClusters::Tree
+    : public nanoflann::KDTreeBaseClass<KdTreeClusters::Tree, Metric, TreePoints, 3> {
+  struct Nodes {
+    FixedVector<Node> nodes;
+
+    template <class T>
+    T* allocate() {
+      nodes.resize(nodes.size() + 1);
+      return &nodes.back();
+    }
+    void free_all() { nodes.clear(); }
+  };
+
+public:
+  // By these names the base class asks for them.
+  TreePoints dataset;
+  Nodes pool;
+
+  explicit Tree(std::size_t max_points) : dataset{}, pool{FixedVector<Node>(2 * max_points)} {
+    m_leaf_max_size = kLeafPoints;
+    dim = 3;
+    vAcc.reserve(max_points);
+  }
+
+  void build(PointView points) {
+    dataset.points = points;
+    m_size = points.size();
+    freeIndex(*this);
+    vAcc.resize(m_size);
+    std::iota(vAcc.begin(), vAcc.end(), 0U);
+    if (m_size == 0) return;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto values = axis == 0 ? points.x : axis == 1 ? points.y : points.z;
+      const auto [low, high] = std::ranges::minmax(values);
+      root_bbox[axis] = {low, high};
+    }
+    root_node = divideTree(*this, 0, m_size, root_bbox);
+  }
+
+  /// Calls visit(index) for the points whose squared distance from point i is no more than this.
+  template <class Visit>
+  void for_each_within(std::uint32_t i, float square, Visit&& visit) const {
+    if (root_node != nullptr) descend(*root_node, i, square, visit);
+  }
+
+private:
+  static constexpr std::size_t kLeafPoints = 16;
+
+  template <class Visit>
+  void descend(const Node& node, std::uint32_t i, float square, Visit& visit) const {
+    if (node.child1 == nullptr) {
+      for (auto at = node.node_type.lr.left; at < node.node_type.lr.right; ++at) {
+        if (square_distance(i, vAcc[at]) <= square) visit(vAcc[at]);
+      }
+      return;
+    }
+    const auto& cut = node.node_type.sub;
+    const float place = dataset.kdtree_get_pt(i, static_cast<std::size_t>(cut.divfeat));
+    // Rounding never makes a distance along one axis larger than the distance, so nothing is lost.
+    const float to_low = place - cut.divlow, to_high = cut.divhigh - place;
+    if (to_low <= 0 || to_low * to_low <= square) descend(*node.child1, i, square, visit);
+    if (to_high <= 0 || to_high * to_high <= square) descend(*node.child2, i, square, visit);
+  }
+
+  float square_distance(std::uint32_t i, std::uint32_t j) const {
+    const PointView& points = dataset.points;
+    const float dx = points.x[i] - points.x[j], dy = points.y[i] - points.y[j],
+                dz = points.z[i] - points.z[j];
+    return dx * dx + dy * dy + dz * dz;
+  }
+};
+
+KdTreeClusters::KdTreeClusters(std::size_t max_points)
+    : tree_(std::make_unique<Tree>(max_points)),
+      labels_(max_points),
+      sizes_(max_points),
+      queue_(max_points) {}
+KdTreeClusters::~KdTreeClusters() = default;
+KdTreeClusters::KdTreeClusters(KdTreeClusters&&) noexcept = default;
+KdTreeClusters& KdTreeClusters::operator=(KdTreeClusters&&) noexcept = default;
+
+void KdTreeClusters::cluster(PointView points, float tolerance) {
+  tree_->build(points);
+  labels_.assign(points.size(), kNoLabel);
+  sizes_.clear();
+  for (std::uint32_t seed = 0; seed < points.size(); ++seed) {
+    if (labels_[seed] != kNoLabel) continue;
+    const auto label = static_cast<std::uint32_t>(sizes_.size());
+    queue_.clear();
+    const auto take = [&](std::uint32_t i) {
+      if (labels_[i] != kNoLabel) return;
+      labels_[i] = label;
+      queue_.push_back(i);
+    };
+    take(seed);
+    for (std::size_t next = 0; next < queue_.size(); ++next) {
+      tree_->for_each_within(queue_[next], tolerance * tolerance, take);
+    }
+    sizes_.push_back(static_cast<std::uint32_t>(queue_.size()));
+  }
+}
+
+}  // namespace scree

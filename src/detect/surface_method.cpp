@@ -1,0 +1,149 @@
+#include "scree/detect/surface_method.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "scree/detect/cell.hpp"
+#include "scree/detect/isolated_points.hpp"
+#include "scree/detect/split_by_sign.hpp"
+
+namespace scree {
+
+GroundSurfaceSettings ground_surface_of(const SurfaceSettings& settings) {
+  return {.cell_size = static_cast<float>(settings.ground_cell),
+          .cell_points = static_cast<float>(settings.ground_points),
+          .max_slope = static_cast<float>(settings.ground_slope),
+          .tolerance = static_cast<float>(settings.ground_tolerance),
+          .trend_reach = static_cast<float>(settings.ground_trend)};
+}
+
+SurfaceMethod::SurfaceMethod(const SurfaceSettings& settings, double clearance,
+                             const DetectorLimits& limits)
+    : settings_(settings),
+      highest_(clearance > 0 ? static_cast<float>(clearance)
+                             : std::numeric_limits<float>::infinity()),
+      max_points_(limits.points),
+      max_candidates_(limits.candidates),
+      gradient_(gradient_of(settings.kernel, settings.kernel_shared)),
+      sloped_(limits.points),
+      surface_(limits.points, limits.ground_cells),
+      solidity_(limits.ground_cells),
+      height_(limits.points),
+      is_off_ground_(limits.points),
+      candidates_(limits.candidates),
+      kept_(limits.candidates),
+      euclidean_(limits.candidates),
+      clusters_(limits.candidates),
+      surroundings_(limits.ground_cells) {
+  if (settings.clustering == SurfaceClustering::regions) {
+    regions_.emplace(limits.candidates, limits.ground_cells);
+  } else {
+    split_ = PointCloud(limits.candidates);
+  }
+}
+
+float SurfaceMethod::reach() const {
+  const auto tolerance = static_cast<float>(settings_.cluster_tolerance);
+  return std::min(reach_of_cells(PlaneCells::cell_size(gradient_.reach()), max_points_, 2),
+                  reach_of_cells(EuclideanClusters::cell_size(tolerance), max_candidates_, 3));
+}
+
+ClusteredPoints SurfaceMethod::find(const PointCloud& points, PointView cloud,
+                                    std::span<const BeamCount> beams, StageCounts& counts,
+                                    StageTimer& timer) {
+  sloped_.cells.build(points, gradient_.reach());
+  build_ground(cloud, beams);
+  mark_points_off_ground();
+  timer.done(Stage::surface);
+  sloped_.compute(gradient_, is_off_ground_);
+  gather_candidates(counts);
+  timer.done(Stage::gradient);
+  remove_isolated_points(candidates_,
+                         kIsolationReach * static_cast<float>(settings_.cluster_tolerance),
+                         euclidean_, kept_);
+  timer.done(Stage::suppression);
+  cluster(counts);
+  timer.done(Stage::clusters);
+  measure_clusters(points);
+  timer.done(Stage::features);
+  return result();
+}
+
+void SurfaceMethod::build_ground(PointView cloud, std::span<const BeamCount> beams) {
+  const GroundSurfaceSettings ground = ground_surface_of(settings_);
+  const auto lowest = static_cast<float>(settings_.body_height);
+  surface_.build(sloped_.points(), ground);
+  solidity_.build(cloud, beams, surface_, lowest, highest_);
+  if (solidity_.has_loose()) {
+    surface_.build_below(solidity_.loose(), ground);
+    solidity_.build(cloud, beams, surface_, lowest, highest_);
+  }
+  if (!beams.empty()) leave_out_ground_below_edges();
+}
+
+/// A rock that is narrower at the ground than above is no less steep for the ground seen below it.
+void SurfaceMethod::leave_out_ground_below_edges() {
+  const PointCloud& points = sloped_.points();
+  const auto highest = static_cast<float>(settings_.body_height);
+  sloped_.cells.remove([&](std::size_t i) {
+    const float x = points.x[i], y = points.y[i];
+    return solidity_.stops_all(surface_.cell_at(x, y)) &&
+           std::abs(points.z[i] - surface_.height(x, y)) < highest;
+  });
+}
+
+void SurfaceMethod::mark_points_off_ground() {
+  const PointCloud& points = sloped_.points();
+  const auto least = static_cast<float>(settings_.body_height);
+  height_.resize(points.size());
+  is_off_ground_.resize(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    height_[i] = points.z[i] - surface_.height(points.x[i], points.y[i]);
+    const std::size_t cell = surface_.cell_at(points.x[i], points.y[i]);
+    // Among grass the ground is seen, and what stands on it.
+    const bool is_ground = surface_.is_ground(cell) && !solidity_.is_loose(cell);
+    is_off_ground_[i] = std::abs(height_[i]) >= least && !is_ground ? 1 : 0;
+  }
+}
+
+void SurfaceMethod::gather_candidates(StageCounts& counts) {
+  candidates_.clear();
+  for (std::size_t i = 0; i < sloped_.size(); ++i) {
+    const bool is_known = sloped_.is_known(i);
+    if (is_known) ++counts.known;
+    if (is_off_ground_[i] == 0) continue;
+    ++counts.candidates;
+    if (!candidates_.push_back(sloped_.points(), i, is_known ? sloped_.slope_x[i] : 0.0F,
+                               is_known ? sloped_.slope_y[i] : 0.0F, height_[i])) {
+      ++counts.candidates_dropped;
+    }
+  }
+}
+
+void SurfaceMethod::cluster(StageCounts& counts) {
+  counts.kept = kept_.size();
+  const auto tolerance = static_cast<float>(settings_.cluster_tolerance);
+  const auto min_size = static_cast<std::uint32_t>(settings_.min_cluster_size);
+  if (regions_) {
+    regions_->label(kept_, surface_, solidity_, {tolerance, static_cast<float>(settings_.saddle)});
+    clusters_.gather(kept_, regions_->labels(), regions_->sizes(), min_size);
+  } else {
+    split_by_sign(kept_, tolerance, split_);
+    euclidean_.cluster(split_, tolerance);
+    clusters_.gather(kept_, euclidean_.labels(), euclidean_.sizes(), min_size);
+  }
+  counts.clusters = clusters_.all().size();
+}
+
+void SurfaceMethod::measure_clusters(const PointCloud& points) {
+  surroundings_.build(points, kept_, surface_);
+  for (Cluster& cluster : clusters_.all()) {
+    const auto members = clusters_.members(cluster);
+    cluster.ground = surface_.height(cluster.box.center_x, cluster.box.center_y);
+    cluster.features = measure(kept_, members);
+    surroundings_.measure(cluster, members, kept_, surface_, solidity_);
+  }
+}
+
+}  // namespace scree
