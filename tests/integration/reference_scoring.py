@@ -1,4 +1,4 @@
-"""The contract's scoring once more, with shapely, to hold `scree evaluate` against."""
+"""The scoring of lists once more, with shapely, to hold `scree evaluate` against."""
 
 import json
 import math

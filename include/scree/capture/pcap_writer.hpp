@@ -17,7 +17,7 @@ struct pcap_dumper;
 
 namespace scree {
 
-/// Writes a pcap file with nanosecond times, as the contract's captures have them.
+/// Writes a pcap file with nanosecond times, as every capture of ours has them.
 class PcapWriter {
 public:
   /// Ethernet frames, for lidar.pcap.
