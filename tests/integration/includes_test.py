@@ -16,8 +16,8 @@ TABLE = """
 | `clock` | time | `core` |
 | `detect` | obstacles | `core` |
 | `learn` | training | `core`, `detect/network` |
-| `app` | the daemon | all above but `learn` |
-| `desk` | a tool | all above but `app/daemon` |
+| `app` | the daemon | all above except `learn` |
+| `desk` | a tool | all above except `app/daemon` |
 
 | room | not of the house |
 |---|---|
@@ -70,8 +70,9 @@ class IncludesTest(ProgramTest):
         self.assert_finds("include/scree/core/points.hpp:3: core -> clock")
 
     def test_an_arrow_to_a_room_beside_is_found_in_a_source_too(self):
-        self.put("src/detect/network.cpp", '#include "scree/clock/line.hpp"\n')
-        self.assert_finds("src/detect/network.cpp:1: detect -> clock")
+        for include in ['#include "scree/clock/line.hpp"', "# include <scree/clock/line.hpp>  // why"]:
+            self.put("src/detect/network.cpp", include + "\n")
+            self.assert_finds("src/detect/network.cpp:1: detect -> clock")
 
     def test_of_a_room_only_the_named_header_may_be_used(self):
         self.put("include/scree/learn/training.hpp", '#include "scree/detect/tracks.hpp"\n')
