@@ -13,7 +13,6 @@
 
 #include "encoder_reader.hpp"
 #include "found_list.hpp"
-#include "hand_over.hpp"
 #include "health_watch.hpp"
 #include "imu_reader.hpp"
 #include "latest.hpp"
@@ -23,6 +22,7 @@
 #include "real_time.hpp"
 #include "scree/publish/publisher.hpp"
 #include "scree/sync/clocks.hpp"
+#include "spsc_pool.hpp"
 #include "thermometer.hpp"
 #include "turn_watch.hpp"
 #include "work_watch.hpp"
@@ -107,10 +107,10 @@ private:
       sweeps_.wait(kLook);
       // Without sweeps too, so that the sensors' rings do not fill.
       if (sensors_ != nullptr) sensors_->gather();
-      while (TimedSweep* sweep = stop_ ? nullptr : sweeps_.take_full()) {
+      while (TimedSweep* sweep = stop_ ? nullptr : sweeps_.pop()) {
         wait_for_motion(*sweep);
         detect(*sweep);
-        sweeps_.give_back(sweep);
+        sweeps_.release(sweep);
         go_round();
       }
     }
@@ -141,7 +141,7 @@ private:
     const ObstacleList* list = process_(sweep.sweep, work);
     const std::int64_t end = steady_ns();
     if (list == nullptr) return;
-    FoundList* found = lists_.take_free();
+    FoundList* found = lists_.acquire();
     if (found == nullptr) {
       lists_dropped_.fetch_add(1, std::memory_order_relaxed);
       return;
@@ -150,7 +150,7 @@ private:
     found->arrival_ns = sweep.arrival_ns;
     found->detector_ns = end - begin;
     found->work = work;
-    lists_.hand_over(found);
+    lists_.push(found);
   }
 
   void publish() {
@@ -163,9 +163,9 @@ private:
         next_look = now + std::chrono::nanoseconds(kLook).count();
       }
       lists_.wait(kLook);
-      while (FoundList* found = lists_.take_full()) {
+      while (FoundList* found = lists_.pop()) {
         publish(*found);
-        lists_.give_back(found);
+        lists_.release(found);
       }
     }
     health_.state = health_t::BLIND;
@@ -263,8 +263,8 @@ private:
   }
 
   std::atomic<bool> stop_{false};
-  SweepRing sweeps_;
-  HandOver<FoundList> lists_;
+  SweepPool sweeps_;
+  SpscPool<FoundList> lists_;
   std::atomic<std::int64_t> lists_dropped_{0}, last_round_ns_{steady_ns()};
   std::atomic<std::uint64_t> not_covered_{0};
   LidarReader reader_;

@@ -26,11 +26,11 @@ Result<LidarPorts> LidarPorts::open(const LidarSettings& settings) {
 }
 
 LidarReader::LidarReader(const LidarSettings& settings, LidarPorts ports, RobotLines::Pulses pps,
-                         SweepRing& sweeps)
+                         SweepPool& sweeps)
     : ports_(std::move(ports)),
       pps_(std::move(pps)),
       sweeps_(sweeps),
-      stream_(settings, [this](Sweep& sweep) { hand_over(sweep); }) {}
+      stream_(settings, [this](Sweep& sweep) { push(sweep); }) {}
 
 void LidarReader::run() {
   pollfd wait_for[] = {{ports_.data.descriptor(), POLLIN, 0},
@@ -102,21 +102,21 @@ void LidarReader::read_pulses() {
   }
 }
 
-void LidarReader::hand_over(Sweep& sweep) {
+void LidarReader::push(Sweep& sweep) {
   if (sweep.is_whole) status_.last_sweep_ns = steady_ns();
   // Nothing seen is not the same as nothing there: a covered sensor must not give empty lists.
   if (sweep.points.empty()) {
     ++status_.sweeps_empty;
     return;
   }
-  TimedSweep* item = sweeps_.take_free();
+  TimedSweep* item = sweeps_.acquire();
   if (item == nullptr) {
     ++status_.sweeps_dropped;
     return;
   }
   std::swap(item->sweep, sweep);
   item->arrival_ns = arrival_ns_;
-  sweeps_.hand_over(item);
+  sweeps_.push(item);
 }
 
 }  // namespace scree

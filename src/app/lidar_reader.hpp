@@ -4,7 +4,6 @@
 #include <cstdint>
 
 #include "event.hpp"
-#include "hand_over.hpp"
 #include "latest.hpp"
 #include "scree/app/robot_lines.hpp"
 #include "scree/config/settings.hpp"
@@ -14,6 +13,7 @@
 #include "scree/drivers/velodyne/udp_receiver.hpp"
 #include "scree/sync/host_clock.hpp"
 #include "sensor_status.hpp"
+#include "spsc_pool.hpp"
 #include "turns.hpp"
 
 namespace scree {
@@ -22,7 +22,7 @@ struct TimedSweep {
   Sweep sweep{velodyne::kSweepCapacity};
   std::int64_t arrival_ns = 0;  ///< of the packet that completed it, monotonic clock
 };
-using SweepRing = HandOver<TimedSweep>;
+using SweepPool = SpscPool<TimedSweep>;
 
 /// The lidar's two ports, bound.
 struct LidarPorts {
@@ -37,7 +37,7 @@ struct LidarPorts {
 class LidarReader {
 public:
   LidarReader(const LidarSettings& settings, LidarPorts ports, RobotLines::Pulses pps,
-              SweepRing& sweeps);
+              SweepPool& sweeps);
 
   /// Returns after stop() was called from another thread.
   void run();
@@ -52,12 +52,12 @@ private:
   void read_position();
   int find_pulses();
   void read_pulses();
-  void hand_over(Sweep& sweep);
+  void push(Sweep& sweep);
 
   LidarPorts ports_;
   RobotLines::Pulses pps_;
   std::int64_t pps_tried_ns_ = 0;
-  SweepRing& sweeps_;
+  SweepPool& sweeps_;
   HostClock clock_;
   velodyne::LidarStream stream_;
   LidarStatus status_;

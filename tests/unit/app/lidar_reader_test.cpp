@@ -78,7 +78,7 @@ protected:
 
   LidarSettings settings_;
   PulsePipe pulses_;
-  SweepRing sweeps_{3, [] { return TimedSweep(); }};
+  SweepPool sweeps_{3, [] { return TimedSweep(); }};
   std::optional<LidarReader> reader_;
   std::thread thread_;
 };

@@ -7,7 +7,6 @@
 #include <thread>
 #include <vector>
 
-#include "hand_over.hpp"
 #include "scree/app/pipeline.hpp"
 #include "scree/capture/can_log.hpp"
 #include "scree/capture/pcap_reader.hpp"
@@ -15,6 +14,7 @@
 #include "scree/drivers/velodyne/lidar_stream.hpp"
 #include "scree/drivers/xsens/imu_stream.hpp"
 #include "scree/publish/jsonl.hpp"
+#include "spsc_pool.hpp"
 #include "unit/recordings.hpp"
 
 namespace scree {
@@ -100,26 +100,26 @@ bool has_come(Pipeline& pipeline, std::int64_t end_ns) {
 std::vector<std::string> in_a_thread_each() {
   const Settings robot = settings();
   Pipeline pipeline = pipeline_of(robot);
-  HandOver<Sweep> sweeps(3, [] { return Sweep(velodyne::kSweepCapacity); });
+  SpscPool<Sweep> sweeps(3, [] { return Sweep(velodyne::kSweepCapacity); });
   const std::jthread imu([&] { play_imu(robot, pipeline.sensors()); });
   const std::jthread encoder([&] { play_encoder(robot, pipeline.sensors()); });
   const std::jthread lidar([&] {
-    int handed_over = 0;
+    int pushed = 0;
     play_lidar(robot, [&](Sweep& sweep) {
       Sweep* item = nullptr;
-      while ((item = sweeps.take_free()) == nullptr) std::this_thread::yield();
+      while ((item = sweeps.acquire()) == nullptr) std::this_thread::yield();
       std::swap(*item, sweep);
-      sweeps.hand_over(item);
-      return ++handed_over < kSweeps;
+      sweeps.push(item);
+      return ++pushed < kSweeps;
     });
   });
   std::vector<std::string> lines;
   while (lines.size() < kSweeps) {
     sweeps.wait(std::chrono::milliseconds(100));
-    while (Sweep* sweep = sweeps.take_full()) {
+    while (Sweep* sweep = sweeps.pop()) {
       while (!has_come(pipeline, sweep->end_ns)) std::this_thread::yield();
       lines.push_back(line_of(pipeline.process(*sweep)));
-      sweeps.give_back(sweep);
+      sweeps.release(sweep);
     }
   }
   return lines;

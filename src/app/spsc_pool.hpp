@@ -10,42 +10,42 @@
 
 namespace scree {
 
-/// A ring of items made beforehand, between one producing and one consuming thread. Nothing is
-/// copied, allocated or locked: the producer fills a free item and hands it over, the consumer
-/// gives it back. When the consumer is too slow there is no free item, and the newest is the one to
-/// drop.
+/// A pool of items made beforehand, which pass through a queue from one producing to one consuming
+/// thread. Nothing is copied, allocated or locked: the producer acquires a free item, fills it and
+/// pushes it; the consumer pops it and releases it. When the consumer is too slow no item is free,
+/// and the producer has to drop what is newest.
 template <class Item>
-class HandOver {
+class SpscPool {
 public:
   /// `make` is called for each of the items.
   template <class Make>
-  HandOver(std::size_t items, Make&& make) : free_(items), full_(items), depth_(items) {
+  SpscPool(std::size_t items, Make&& make) : free_(items), full_(items), depth_(items) {
     items_.reserve(items);
     for (std::size_t i = 0; i < items; ++i) items_.push_back(make());
     for (Item& item : items_) free_.push(&item);
   }
 
-  /// Producer: an item to fill and hand over, or null when the consumer holds all of them.
-  Item* take_free() {
+  /// Producer: a free item to fill and push, or null when the consumer has all of them.
+  Item* acquire() {
     Item* item = nullptr;
     free_.pop(item);
     return item;
   }
-  /// Producer: passes a filled item on and wakes the consumer.
-  void hand_over(Item* item) {
+  /// Producer: passes a filled item to the consumer and wakes it.
+  void push(Item* item) {
     depth_.put();
     full_.push(item);
     filled_.wake();
   }
 
   /// Consumer: the oldest filled item, or null when none waits.
-  Item* take_full() {
+  Item* pop() {
     Item* item = nullptr;
     full_.pop(item);
     return item;
   }
-  /// Consumer: done with the item.
-  void give_back(Item* item) {
+  /// Consumer: makes an item free again.
+  void release(Item* item) {
     depth_.take();
     free_.push(item);
   }

@@ -1,4 +1,4 @@
-#include "app/hand_over.hpp"
+#include "app/spsc_pool.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,66 +18,66 @@ Item make_item() {
   return {};
 }
 
-TEST(HandOver, WhenFullNothingIsFreeUntilOneIsGivenBack) {
-  HandOver<Item> ring(2, make_item);
+TEST(SpscPool, WhenFullNothingIsFreeUntilOneIsReleased) {
+  SpscPool<Item> pool(2, make_item);
   for (std::uint64_t i = 1; i <= 2; ++i) {
-    Item* item = ring.take_free();
+    Item* item = pool.acquire();
     ASSERT_NE(item, nullptr);
     item->number = i;
-    ring.hand_over(item);
+    pool.push(item);
   }
-  EXPECT_EQ(ring.take_free(), nullptr);
-  EXPECT_EQ(ring.fill().waiting, 2U);
-  Item* oldest = ring.take_full();
+  EXPECT_EQ(pool.acquire(), nullptr);
+  EXPECT_EQ(pool.fill().waiting, 2U);
+  Item* oldest = pool.pop();
   ASSERT_NE(oldest, nullptr);
   EXPECT_EQ(oldest->number, 1U);
-  EXPECT_EQ(ring.take_free(), nullptr) << "the consumer still works on it";
-  ring.give_back(oldest);
-  EXPECT_EQ(ring.take_free(), oldest);
-  EXPECT_EQ(ring.take_full()->number, 2U);
-  EXPECT_EQ(ring.take_full(), nullptr);
-  EXPECT_EQ(ring.fill().waiting, 1U) << "the one that is worked on";
-  EXPECT_EQ(ring.fill().most, 2U);
-  EXPECT_EQ(ring.fill().capacity, 2U);
+  EXPECT_EQ(pool.acquire(), nullptr) << "the consumer still works on it";
+  pool.release(oldest);
+  EXPECT_EQ(pool.acquire(), oldest);
+  EXPECT_EQ(pool.pop()->number, 2U);
+  EXPECT_EQ(pool.pop(), nullptr);
+  EXPECT_EQ(pool.fill().waiting, 1U) << "the one that is worked on";
+  EXPECT_EQ(pool.fill().most, 2U);
+  EXPECT_EQ(pool.fill().capacity, 2U);
 }
 
-TEST(HandOver, AWakeUpBeforeTheWaitIsNotLost) {
-  HandOver<Item> ring(1, make_item);
-  ring.wake();
-  ring.wait(std::chrono::milliseconds(60'000));
+TEST(SpscPool, AWakeUpBeforeTheWaitIsNotLost) {
+  SpscPool<Item> pool(1, make_item);
+  pool.wake();
+  pool.wait(std::chrono::milliseconds(60'000));
 }
 
-TEST(HandOver, EverythingHandedOverArrivesOnceAndInOrder) {
+TEST(SpscPool, EverythingPushedArrivesOnceAndInOrder) {
   constexpr std::uint64_t kItems = 20'000;
-  HandOver<std::unique_ptr<Item>> ring(3, [] { return std::make_unique<Item>(); });
+  SpscPool<std::unique_ptr<Item>> pool(3, [] { return std::make_unique<Item>(); });
   std::jthread producer([&] {
     for (std::uint64_t i = 1; i <= kItems;) {
-      std::unique_ptr<Item>* item = ring.take_free();
+      std::unique_ptr<Item>* item = pool.acquire();
       if (item == nullptr) {
         std::this_thread::yield();
         continue;
       }
       (*item)->number = i++;
-      ring.hand_over(item);
+      pool.push(item);
     }
   });
   // A third thread, as the one that publishes health.
   std::jthread watcher([&](const std::stop_token& stop) {
     while (!stop.stop_requested()) {
-      const QueueFill fill = ring.fill();
+      const QueueFill fill = pool.fill();
       EXPECT_LE(fill.waiting, 3U);
       EXPECT_LE(fill.most, 3U);
       std::this_thread::yield();
     }
   });
   for (std::uint64_t expected = 1; expected <= kItems;) {
-    std::unique_ptr<Item>* item = ring.take_full();
+    std::unique_ptr<Item>* item = pool.pop();
     if (item == nullptr) {
-      ring.wait(std::chrono::milliseconds(60'000));
+      pool.wait(std::chrono::milliseconds(60'000));
       continue;
     }
     ASSERT_EQ((*item)->number, expected++);
-    ring.give_back(item);
+    pool.release(item);
   }
 }
 
