@@ -15,7 +15,6 @@
 #include "found_list.hpp"
 #include "health_watch.hpp"
 #include "imu_reader.hpp"
-#include "latest.hpp"
 #include "lidar_reader.hpp"
 #include "output_lines.hpp"
 #include "page_faults.hpp"
@@ -24,6 +23,7 @@
 #include "scree/sync/clocks.hpp"
 #include "spsc_pool.hpp"
 #include "thermometer.hpp"
+#include "triple_buffer.hpp"
 #include "turn_watch.hpp"
 #include "work_watch.hpp"
 
@@ -273,7 +273,7 @@ private:
   Process process_;
   SyncBuffer* sensors_;
   std::atomic<std::int64_t> wait_ns_{0};
-  Latest<StopSettings> zone_;
+  TripleBuffer<StopSettings> zone_;
 
   // Of the publishing thread alone.
   Publisher publisher_;

@@ -4,13 +4,13 @@
 #include <string>
 
 #include "event.hpp"
-#include "latest.hpp"
 #include "scree/config/settings.hpp"
 #include "scree/drivers/encoder/can_socket.hpp"
 #include "scree/drivers/encoder/encoder_stream.hpp"
 #include "scree/sync/host_clock.hpp"
 #include "scree/sync/sync_buffer.hpp"
 #include "sensor_status.hpp"
+#include "triple_buffer.hpp"
 #include "turns.hpp"
 
 namespace scree {
@@ -42,7 +42,7 @@ private:
   encoder::EncoderStream stream_;
   HostClock clock_;
   EncoderStatus status_;
-  Latest<EncoderStatus> shared_status_;
+  TripleBuffer<EncoderStatus> shared_status_;
   std::string said_;
   Turns turns_;
   Event stop_;

@@ -4,13 +4,13 @@
 #include <string>
 
 #include "event.hpp"
-#include "latest.hpp"
 #include "scree/config/settings.hpp"
 #include "scree/drivers/xsens/device.hpp"
 #include "scree/drivers/xsens/imu_stream.hpp"
 #include "scree/sync/host_clock.hpp"
 #include "scree/sync/sync_buffer.hpp"
 #include "sensor_status.hpp"
+#include "triple_buffer.hpp"
 #include "turns.hpp"
 
 namespace scree {
@@ -41,7 +41,7 @@ private:
   xsens::ImuStream stream_;
   HostClock clock_;
   ImuStatus status_;
-  Latest<ImuStatus> shared_status_;
+  TripleBuffer<ImuStatus> shared_status_;
   bool measures_ = false;
   std::string said_;
   Turns turns_;

@@ -4,7 +4,6 @@
 #include <cstdint>
 
 #include "event.hpp"
-#include "latest.hpp"
 #include "scree/app/robot_lines.hpp"
 #include "scree/config/settings.hpp"
 #include "scree/core/result.hpp"
@@ -14,6 +13,7 @@
 #include "scree/sync/host_clock.hpp"
 #include "sensor_status.hpp"
 #include "spsc_pool.hpp"
+#include "triple_buffer.hpp"
 #include "turns.hpp"
 
 namespace scree {
@@ -61,7 +61,7 @@ private:
   HostClock clock_;
   velodyne::LidarStream stream_;
   LidarStatus status_;
-  Latest<LidarStatus> shared_status_;
+  TripleBuffer<LidarStatus> shared_status_;
   Turns turns_;
   Event stop_;
   std::int64_t arrival_ns_ = 0;              // of the datagram under way

@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "latest.hpp"
 #include "log_format.hpp"
 #include "real_time.hpp"
 #include "running_config.hpp"
@@ -16,6 +15,7 @@
 #include "scree/sync/clocks.hpp"
 #include "service_manager.hpp"
 #include "supervisor.hpp"
+#include "triple_buffer.hpp"
 
 namespace {
 
@@ -39,7 +39,7 @@ scree::MotionReport motion_of(scree::Pipeline& pipeline) {
 }
 
 scree::Process process_of(scree::Pipeline& pipeline,
-                          scree::Latest<scree::TrackingSettings>& tracking) {
+                          scree::TripleBuffer<scree::TrackingSettings>& tracking) {
   return [&pipeline, &tracking, all = scree::Dropped()](
              const scree::Sweep& sweep, scree::Work& work) mutable -> const scree::ObstacleList* {
     pipeline.set_tracking(tracking.get());
@@ -103,7 +103,7 @@ int run(const std::filesystem::path& file) {
 
   pipeline->time_stages(scree::steady_ns);
 
-  scree::Latest<scree::TrackingSettings> tracking;
+  scree::TripleBuffer<scree::TrackingSettings> tracking;
   tracking.put(settings.track);
   const scree::Signals signals;
   auto daemon = scree::Daemon::start(settings, process_of(*pipeline, tracking),

@@ -5,8 +5,6 @@
 #include <memory>
 #include <thread>
 
-#include "app/latest.hpp"
-
 namespace scree {
 namespace {
 
@@ -78,38 +76,6 @@ TEST(SpscPool, EverythingPushedArrivesOnceAndInOrder) {
     }
     ASSERT_EQ((*item)->number, expected++);
     pool.release(item);
-  }
-}
-
-TEST(Latest, BeforeTheFirstItIsADefaultOne) {
-  Latest<Item> latest;
-  EXPECT_EQ(latest.get().number, 0U);
-}
-
-TEST(Latest, GivesTheNewestAndKeepsIt) {
-  Latest<Item> latest;
-  for (std::uint64_t i = 1; i < 10; ++i) latest.put({i});
-  EXPECT_EQ(latest.get().number, 9U);
-  EXPECT_EQ(latest.get().number, 9U);
-  latest.put({10});
-  EXPECT_EQ(latest.get().number, 10U);
-}
-
-TEST(Latest, ValuesAreNeverTornAndNeverGoBack) {
-  struct Pair {
-    std::uint64_t first = 0, second = 0;
-  };
-  constexpr std::uint64_t kValues = 100'000;
-  Latest<Pair> latest;
-  std::jthread writer([&] {
-    for (std::uint64_t i = 1; i <= kValues; ++i) latest.put({i, ~i});
-  });
-  std::uint64_t last = 0;
-  while (last < kValues) {
-    const Pair& pair = latest.get();
-    ASSERT_TRUE(pair.first == 0 || pair.second == ~pair.first);
-    ASSERT_GE(pair.first, last);
-    last = pair.first;
   }
 }
 

@@ -6,10 +6,10 @@
 
 namespace scree {
 
-/// The newest value of one thread for one other, whole and without waiting. Of the three copies one
-/// belongs to the writer, one to the reader, and the third changes hands.
+/// Passes the newest value of one thread to one other, whole and without waiting. One of the three
+/// copies belongs to the writer, one to the reader, and the third changes hands.
 template <class Value>
-class Latest {
+class TripleBuffer {
 public:
   /// Writer.
   void put(const Value& value) {
