@@ -12,7 +12,6 @@
 #include <utility>
 
 #include "encoder_reader.hpp"
-#include "found_list.hpp"
 #include "health_watch.hpp"
 #include "imu_reader.hpp"
 #include "lidar_reader.hpp"
@@ -23,8 +22,9 @@
 #include "scree/sync/clocks.hpp"
 #include "spsc_pool.hpp"
 #include "thermometer.hpp"
+#include "thread_watchdog.hpp"
+#include "timed_obstacle_list.hpp"
 #include "triple_buffer.hpp"
-#include "turn_watch.hpp"
 #include "work_watch.hpp"
 
 namespace scree {
@@ -42,7 +42,7 @@ public:
   Threads(const Settings& settings, Process process, SyncBuffer* sensors, const RobotLines& lines,
           LidarPorts ports, Publisher publisher)
       : sweeps_(kSweeps, [] { return TimedSweep(); }),
-        lists_(kLists, [&] { return FoundList(max_obstacles(settings)); }),
+        lists_(kLists, [&] { return TimedObstacleList(max_obstacles(settings)); }),
         reader_(settings.lidar, std::move(ports), lines.pps, sweeps_),
         process_(std::move(process)),
         sensors_(sensors),
@@ -54,10 +54,10 @@ public:
     if (sensors_ != nullptr) {
       imu_.emplace(settings.imu, *sensors_);
       encoder_.emplace(settings.encoder, *sensors_);
-      reading_imu_ = run("imu", imu_->turns(), [this] { imu_->run(); });
-      reading_encoder_ = run("encoder", encoder_->turns(), [this] { encoder_->run(); });
+      reading_imu_ = run("imu", imu_->loops(), [this] { imu_->run(); });
+      reading_encoder_ = run("encoder", encoder_->loops(), [this] { encoder_->run(); });
     }
-    reading_ = run("lidar", reader_.turns(), [this] { reader_.run(); });
+    reading_ = run("lidar", reader_.loops(), [this] { reader_.run(); });
     detecting_ = run("detector", detected_, [this] { detect(); });
     publishing_ = run("publisher", published_, [this] { publish(); });
     run_first({&reading_, &reading_imu_, &reading_encoder_});
@@ -76,7 +76,7 @@ public:
     reading_encoder_.join();
   }
 
-  std::string_view missing_thread() override { return turns_.missing(); }
+  std::string_view stalled_thread() override { return watchdog_.stalled(); }
 
   void apply(const Settings& settings) override {
     zone_.put(settings.stop);
@@ -94,8 +94,8 @@ public:
 
 private:
   template <class Work>
-  std::thread run(const char* name, const Turns& turns, Work work) {
-    turns_.add(name, turns);
+  std::thread run(const char* name, const LoopCounter& loops, Work work) {
+    watchdog_.add(name, loops);
     std::thread thread(work);
     pthread_setname_np(thread.native_handle(), name);  // as `top -H` shows it
     return thread;
@@ -117,7 +117,7 @@ private:
   }
 
   void go_round() {
-    detected_.note();
+    detected_.increment();
     last_round_ns_.store(steady_ns(), std::memory_order_relaxed);
   }
 
@@ -141,12 +141,12 @@ private:
     const ObstacleList* list = process_(sweep.sweep, work);
     const std::int64_t end = steady_ns();
     if (list == nullptr) return;
-    FoundList* found = lists_.acquire();
+    TimedObstacleList* found = lists_.acquire();
     if (found == nullptr) {
       lists_dropped_.fetch_add(1, std::memory_order_relaxed);
       return;
     }
-    found->take(*list);
+    found->copy_from(*list);
     found->arrival_ns = sweep.arrival_ns;
     found->detector_ns = end - begin;
     found->work = work;
@@ -156,14 +156,14 @@ private:
   void publish() {
     std::int64_t next_look = steady_ns();
     while (!stop_) {
-      published_.note();
+      published_.increment();
       const std::int64_t now = steady_ns();
       if (now >= next_look) {
         look(now);
         next_look = now + std::chrono::nanoseconds(kLook).count();
       }
       lists_.wait(kLook);
-      while (FoundList* found = lists_.pop()) {
+      while (TimedObstacleList* found = lists_.pop()) {
         publish(*found);
         lists_.release(found);
       }
@@ -175,7 +175,7 @@ private:
     report(now);
   }
 
-  void publish(FoundList& found) {
+  void publish(TimedObstacleList& found) {
     outputs_.see(found.list, steady_ns());
     found.list.stamp_ns = clock_.to_real(found.list.stamp_ns, read_clocks());
     const bool is_taken = publisher_.publish(found.list);
@@ -255,7 +255,7 @@ private:
   void fill_computer() {
     health_.threads.clear();
     for (const PageFaults& faults : page_faults()) {
-      if (!turns_.watches(faults.thread)) continue;
+      if (!watchdog_.watches(faults.thread)) continue;
       health_.threads.push_back({faults.thread, faults.minor, faults.major});
     }
     health_.threads_size = static_cast<std::int32_t>(health_.threads.size());
@@ -264,7 +264,7 @@ private:
 
   std::atomic<bool> stop_{false};
   SweepPool sweeps_;
-  SpscPool<FoundList> lists_;
+  SpscPool<TimedObstacleList> lists_;
   std::atomic<std::int64_t> lists_dropped_{0}, last_round_ns_{steady_ns()};
   std::atomic<std::uint64_t> not_covered_{0};
   LidarReader reader_;
@@ -285,8 +285,8 @@ private:
   Thermometer thermometer_;
   std::int64_t last_list_ns_ = 0, last_report_ns_ = steady_ns();
 
-  TurnWatch turns_;
-  Turns detected_, published_;
+  ThreadWatchdog watchdog_;
+  LoopCounter detected_, published_;
   std::mutex status_mutex_;
   std::string status_ = "starting";
   std::thread reading_, reading_imu_, reading_encoder_, detecting_, publishing_;

@@ -11,7 +11,7 @@
 namespace scree {
 namespace {
 
-static_assert(kLongestTurnMs <= encoder::CanSocket::kRetryNs / 1'000'000);
+static_assert(kMaxWaitMs <= encoder::CanSocket::kRetryNs / 1'000'000);
 
 }  // namespace
 
@@ -21,11 +21,11 @@ EncoderReader::EncoderReader(const EncoderSettings& settings, SyncBuffer& sensor
 
 void EncoderReader::run() {
   while (true) {
-    turns_.note();
+    loops_.increment();
     if (!socket_) open();
     pollfd wait_for[] = {{socket_ ? socket_->descriptor() : -1, POLLIN, 0},
                          {stop_.descriptor(), POLLIN, 0}};
-    if (poll(wait_for, std::size(wait_for), kLongestTurnMs) < 0) continue;  // a signal came between
+    if (poll(wait_for, std::size(wait_for), kMaxWaitMs) < 0) continue;  // a signal came between
     if (wait_for[1].revents != 0) return;
     if (socket_) read();
   }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "event.hpp"
+#include "loop_counter.hpp"
 #include "scree/config/settings.hpp"
 #include "scree/drivers/encoder/can_socket.hpp"
 #include "scree/drivers/encoder/encoder_stream.hpp"
@@ -11,7 +12,6 @@
 #include "scree/sync/sync_buffer.hpp"
 #include "sensor_status.hpp"
 #include "triple_buffer.hpp"
-#include "turns.hpp"
 
 namespace scree {
 
@@ -30,7 +30,7 @@ public:
 
   /// For one other thread: what was seen so far.
   const EncoderStatus& status() { return shared_status_.get(); }
-  const Turns& turns() const { return turns_; }
+  const LoopCounter& loops() const { return loops_; }
 
 private:
   void open();
@@ -44,7 +44,7 @@ private:
   EncoderStatus status_;
   TripleBuffer<EncoderStatus> shared_status_;
   std::string said_;
-  Turns turns_;
+  LoopCounter loops_;
   Event stop_;
 };
 

@@ -14,7 +14,7 @@ namespace {
 
 int milliseconds_until(std::int64_t due_ns) {
   const std::int64_t left_ns = due_ns - steady_ns();
-  return static_cast<int>(std::clamp<std::int64_t>(left_ns / 1'000'000 + 1, 0, kLongestTurnMs));
+  return static_cast<int>(std::clamp<std::int64_t>(left_ns / 1'000'000 + 1, 0, kMaxWaitMs));
 }
 
 }  // namespace
@@ -25,11 +25,11 @@ ImuReader::ImuReader(const ImuSettings& settings, SyncBuffer& sensors)
 
 void ImuReader::run() {
   while (true) {
-    turns_.note();
+    loops_.increment();
     if (!device_) open();
     pollfd wait_for[] = {{device_ ? device_->descriptor() : -1, POLLIN, 0},
                          {stop_.descriptor(), POLLIN, 0}};
-    const int longest = device_ ? milliseconds_until(device_->due_ns()) : kLongestTurnMs;
+    const int longest = device_ ? milliseconds_until(device_->due_ns()) : kMaxWaitMs;
     if (poll(wait_for, std::size(wait_for), longest) < 0) continue;  // a signal came between
     if (wait_for[1].revents != 0) return;
     if (device_) read();

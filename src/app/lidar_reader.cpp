@@ -38,9 +38,9 @@ void LidarReader::run() {
                        {-1, POLLIN, 0},
                        {stop_.descriptor(), POLLIN, 0}};
   while (true) {
-    turns_.note();
+    loops_.increment();
     if (wait_for[2].fd < 0) wait_for[2].fd = find_pulses();
-    if (poll(wait_for, std::size(wait_for), kLongestTurnMs) < 0) continue;  // a signal came between
+    if (poll(wait_for, std::size(wait_for), kMaxWaitMs) < 0) continue;  // a signal came between
     if (wait_for[3].revents != 0) return;
     if ((wait_for[2].revents & POLLIN) != 0) {
       read_pulses();

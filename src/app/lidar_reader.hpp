@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "event.hpp"
+#include "loop_counter.hpp"
 #include "scree/app/robot_lines.hpp"
 #include "scree/config/settings.hpp"
 #include "scree/core/result.hpp"
@@ -14,7 +15,6 @@
 #include "sensor_status.hpp"
 #include "spsc_pool.hpp"
 #include "triple_buffer.hpp"
-#include "turns.hpp"
 
 namespace scree {
 
@@ -45,7 +45,7 @@ public:
 
   /// For one other thread: what was seen so far.
   const LidarStatus& status() { return shared_status_.get(); }
-  const Turns& turns() const { return turns_; }
+  const LoopCounter& loops() const { return loops_; }
 
 private:
   void read_data();
@@ -62,7 +62,7 @@ private:
   velodyne::LidarStream stream_;
   LidarStatus status_;
   TripleBuffer<LidarStatus> shared_status_;
-  Turns turns_;
+  LoopCounter loops_;
   Event stop_;
   std::int64_t arrival_ns_ = 0;              // of the datagram under way
   std::array<std::uint8_t, 2048> buffer_{};  // longer than a packet, to tell the size of others

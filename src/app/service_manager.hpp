@@ -13,7 +13,7 @@ void reloading();
 void stopping();
 /// One sentence, for `systemctl status`.
 void status(const std::string& sentence);
-/// All threads go round.
+/// All threads loop.
 void alive();
 
 /// Without alive() for so long, systemd ends the process and starts it anew; nothing where it does

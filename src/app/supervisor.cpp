@@ -13,31 +13,35 @@ namespace {
 using std::chrono::microseconds;
 using Clock = std::chrono::steady_clock;
 
-/// Looks after the threads, and tells systemd when all go round.
-class Watch {
+/// Feeds systemd's watchdog while no thread of the daemon is stalled.
+class WatchdogFeeder {
 public:
-  explicit Watch(Daemon& daemon) : daemon_(daemon) {}
+  explicit WatchdogFeeder(Daemon& daemon) : daemon_(daemon) {}
 
-  microseconds pause() const { return limit_ / 4; }
+  /// Often enough that one check may fail without systemd ending the process.
+  microseconds interval() const { return limit_ / 4; }
 
-  void look() {
-    const std::string_view missing = daemon_.missing_thread();
-    if (missing.empty()) {
+  void check() {
+    const std::string_view stalled = daemon_.stalled_thread();
+    if (stalled.empty()) {
       service_manager::alive();
-      if (has_said_) spdlog::info("all threads go round again");
-      has_said_ = false;
+      if (is_logged_) spdlog::info("all threads go round again");
+      is_logged_ = false;
       alive_at_ = Clock::now();
-    } else if (!has_said_ && Clock::now() - alive_at_ > limit_ / 2) {
-      spdlog::error("the {} thread hangs", missing);
-      has_said_ = true;
+    } else if (!is_logged_ && Clock::now() - alive_at_ > limit_ / 2) {
+      spdlog::error("the {} thread hangs", stalled);
+      is_logged_ = true;
     }
   }
 
 private:
+  // Where systemd does not watch, the log still names a thread that hangs for two seconds.
+  static constexpr std::chrono::seconds kLimitWithoutSystemd{4};
+
   Daemon& daemon_;
-  microseconds limit_ = service_manager::watchdog().value_or(std::chrono::seconds(4));
+  microseconds limit_ = service_manager::watchdog().value_or(kLimitWithoutSystemd);
   Clock::time_point alive_at_ = Clock::now();
-  bool has_said_ = false;
+  bool is_logged_ = false;
 };
 
 }  // namespace
@@ -56,11 +60,11 @@ int Signals::wait(microseconds longest) const {
 }
 
 int supervise(Daemon& daemon, const Signals& signals, const std::function<void()>& reload) {
-  Watch watch(daemon);
-  std::string said;
+  WatchdogFeeder watchdog(daemon);
+  std::string told;
   service_manager::ready();
   while (true) {
-    const int signal = signals.wait(watch.pause());
+    const int signal = signals.wait(watchdog.interval());
     if (signal == SIGHUP) {
       service_manager::reloading();
       reload();
@@ -69,10 +73,10 @@ int supervise(Daemon& daemon, const Signals& signals, const std::function<void()
       service_manager::stopping();
       return signal;
     }
-    watch.look();
+    watchdog.check();
     const std::string status = daemon.status();
-    if (status != said) service_manager::status(status);
-    said = status;
+    if (status != told) service_manager::status(status);
+    told = status;
   }
 }
 

@@ -21,9 +21,9 @@ private:
   sigset_t signals_{};
 };
 
-/// Serves the running daemon until SIGTERM or SIGINT comes, which it returns: tells systemd how it
-/// fares, and that it is alive as long as all its threads go round; says in the log which one does
-/// not.
+/// Serves the running daemon until SIGTERM or SIGINT comes, which it returns. Tells systemd how the
+/// daemon fares, and that it is alive as long as all its threads loop. The log names a thread that
+/// hangs.
 /// @param reload is called at SIGHUP
 int supervise(Daemon& daemon, const Signals& signals, const std::function<void()>& reload);
 

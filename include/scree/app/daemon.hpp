@@ -67,9 +67,9 @@ public:
 
   // For the thread that has started it.
 
-  /// The name of a thread that has not gone round since this last found that all had; empty when
-  /// all have. A thread that waits goes round twice a second, the detector once a sweep.
-  virtual std::string_view missing_thread() = 0;
+  /// The name of a thread that has not looped since the last call that found that all had; empty
+  /// when all have. A thread that waits loops twice a second, the detector once a sweep.
+  virtual std::string_view stalled_thread() = 0;
   /// Takes over settings.stop and settings.map.wait.
   virtual void apply(const Settings& settings) = 0;
   /// What the robot sees, or why it does not; one sentence.

@@ -248,12 +248,12 @@ TEST_F(DaemonTest, TheLinesFollowWhatIsSeen) {
   EXPECT_TRUE(is_stopped) << "at the end";
 }
 
-TEST_F(DaemonTest, AThreadThatDoesNotGoRoundIsNamed) {
+TEST_F(DaemonTest, AThreadThatHangsIsNamed) {
   const auto daemon = start();
   // Asks from time to time, until it says so or a minute is over.
   const auto is_missing = [&](std::string_view thread) {
     const auto end = Clock::now() + std::chrono::minutes(1);
-    while (daemon->missing_thread() != thread && Clock::now() < end) {
+    while (daemon->stalled_thread() != thread && Clock::now() < end) {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
     return Clock::now() < end;
@@ -263,7 +263,7 @@ TEST_F(DaemonTest, AThreadThatDoesNotGoRoundIsNamed) {
   EXPECT_TRUE(is_missing(""));
   is_stuck_ = true;
   for (int i = 0; i < 3; ++i) {
-    // All others go round meanwhile.
+    // All others loop meanwhile.
     std::this_thread::sleep_for(std::chrono::seconds(1));
     ASSERT_TRUE(is_missing("detector"));
   }

@@ -10,11 +10,11 @@
 namespace scree {
 
 /// A list on its way from the detector to the publisher.
-struct FoundList {
-  explicit FoundList(std::size_t max_obstacles) : list(max_obstacles) {}
+struct TimedObstacleList {
+  explicit TimedObstacleList(std::size_t max_obstacles) : list(max_obstacles) {}
 
   /// Copies a list, as far as there is room; allocates nothing.
-  void take(const ObstacleList& from) {
+  void copy_from(const ObstacleList& from) {
     list.stamp_ns = from.stamp_ns;
     list.pose = from.pose;
     list.obstacles.resize(std::min(from.obstacles.size(), list.obstacles.capacity()));

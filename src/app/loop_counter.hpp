@@ -1,0 +1,23 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+namespace scree {
+
+/// The longest that a thread waits for something before it runs through its loop again. It is less
+/// than the time between two checks of the watchdog: 0.75 s, a quarter of the service's WatchdogSec.
+constexpr int kMaxWaitMs = 500;
+
+/// Counts how often a thread has run through its loop, so that another one can see whether it still
+/// does.
+class LoopCounter {
+public:
+  void increment() { count_.fetch_add(1, std::memory_order_relaxed); }
+  std::uint64_t count() const { return count_.load(std::memory_order_relaxed); }
+
+private:
+  std::atomic<std::uint64_t> count_{0};
+};
+
+}  // namespace scree
