@@ -11,6 +11,7 @@
 #include <thread>
 #include <utility>
 
+#include "detection_statistics.hpp"
 #include "encoder_reader.hpp"
 #include "health_watch.hpp"
 #include "imu_reader.hpp"
@@ -25,7 +26,6 @@
 #include "thread_watchdog.hpp"
 #include "timed_obstacle_list.hpp"
 #include "triple_buffer.hpp"
-#include "work_watch.hpp"
 
 namespace scree {
 namespace {
@@ -39,8 +39,8 @@ constexpr std::int64_t kReport = 1'000'000'000;
 
 class Threads final : public Daemon {
 public:
-  Threads(const Settings& settings, Process process, SyncBuffer* sensors, const RobotLines& lines,
-          LidarPorts ports, Publisher publisher)
+  Threads(const Settings& settings, SweepProcessor process, SyncBuffer* sensors,
+          const RobotLines& lines, LidarPorts ports, Publisher publisher)
       : sweeps_(kSweeps, [] { return TimedSweep(); }),
         lists_(kLists, [&] { return TimedObstacleList(max_obstacles(settings)); }),
         reader_(settings.lidar, std::move(ports), lines.pps, sweeps_),
@@ -93,10 +93,10 @@ public:
   }
 
 private:
-  template <class Work>
-  std::thread run(const char* name, const LoopCounter& loops, Work work) {
+  template <class Body>
+  std::thread run(const char* name, const LoopCounter& loops, Body body) {
     watchdog_.add(name, loops);
-    std::thread thread(work);
+    std::thread thread(body);
     pthread_setname_np(thread.native_handle(), name);  // as `top -H` shows it
     return thread;
   }
@@ -136,9 +136,9 @@ private:
   }
 
   void detect(const TimedSweep& sweep) {
-    Work work;
+    DetectionReport report;
     const std::int64_t begin = steady_ns();
-    const ObstacleList* list = process_(sweep.sweep, work);
+    const ObstacleList* list = process_(sweep.sweep, report);
     const std::int64_t end = steady_ns();
     if (list == nullptr) return;
     TimedObstacleList* found = lists_.acquire();
@@ -149,7 +149,7 @@ private:
     found->copy_from(*list);
     found->arrival_ns = sweep.arrival_ns;
     found->detector_ns = end - begin;
-    found->work = work;
+    found->report = report;
     lists_.push(found);
   }
 
@@ -180,7 +180,7 @@ private:
     found.list.stamp_ns = clock_.to_real(found.list.stamp_ns, read_clocks());
     const bool is_taken = publisher_.publish(found.list);
     const std::int64_t now = steady_ns(), latency_ns = now - found.arrival_ns;
-    work_.see(latency_ns, found.detector_ns, found.work);
+    statistics_.record(latency_ns, found.detector_ns, found.report);
     ++(is_taken ? health_.lists_published : health_.lists_failed);
     if (!is_taken) return;
     outputs_.beat();
@@ -192,7 +192,7 @@ private:
     const LidarStatus& lidar = reader_.status();
     const DetectorStatus detector{last_round_ns_.load(std::memory_order_relaxed), last_list_ns_,
                                   not_covered_.load(std::memory_order_relaxed),
-                                  work_.motion().slips, work_.motion().heading_resets};
+                                  statistics_.motion().slips, statistics_.motion().heading_resets};
     bool has_changed =
         watch_.update(now, lidar, imu_ ? imu_->status() : ImuStatus(),
                       encoder_ ? encoder_->status() : EncoderStatus(), detector, health_);
@@ -234,12 +234,12 @@ private:
   void fill_counts() {
     const auto count = [](std::uint64_t value) { return static_cast<std::int64_t>(value); };
     const LidarStatus& lidar = reader_.status();
-    work_.fill(health_);
+    statistics_.fill(health_);
     health_.sweeps = count(lidar.lidar.sweeps);
     health_.sweeps_dropped = count(lidar.sweeps_dropped);
     health_.sweeps_empty = count(lidar.sweeps_empty);
     health_.sweeps_not_covered = count(not_covered_.load(std::memory_order_relaxed));
-    health_.points_dropped = count(lidar.lidar.dropped + work_.dropped().points);
+    health_.points_dropped = count(lidar.lidar.dropped + statistics_.drops().points);
     health_.lists_dropped = lists_dropped_.load(std::memory_order_relaxed);
     health_.queues = {queue_message("sweeps", sweeps_.fill()),
                       queue_message("lists", lists_.fill())};
@@ -270,7 +270,7 @@ private:
   LidarReader reader_;
   std::optional<ImuReader> imu_;
   std::optional<EncoderReader> encoder_;
-  Process process_;
+  SweepProcessor process_;
   SyncBuffer* sensors_;
   std::atomic<std::int64_t> wait_ns_{0};
   TripleBuffer<StopSettings> zone_;
@@ -281,7 +281,7 @@ private:
   OutputLines outputs_;
   HealthWatch watch_;
   health_t health_{};
-  WorkWatch work_;
+  DetectionStatistics statistics_;
   Thermometer thermometer_;
   std::int64_t last_list_ns_ = 0, last_report_ns_ = steady_ns();
 
@@ -294,7 +294,7 @@ private:
 
 }  // namespace
 
-Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings, Process process,
+Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings, SweepProcessor process,
                                               SyncBuffer* sensors, const RobotLines& lines) {
   auto ports = LidarPorts::open(settings.lidar);
   if (!ports) return tl::make_unexpected(ports.error());

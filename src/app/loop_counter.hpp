@@ -6,7 +6,8 @@
 namespace scree {
 
 /// The longest that a thread waits for something before it runs through its loop again. It is less
-/// than the time between two checks of the watchdog: 0.75 s, a quarter of the service's WatchdogSec.
+/// than the time between two checks of the watchdog: 0.75 s, a quarter of the service's
+/// WatchdogSec.
 constexpr int kMaxWaitMs = 500;
 
 /// Counts how often a thread has run through its loop, so that another one can see whether it still

@@ -4,8 +4,10 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 
 #include "log_format.hpp"
+#include "pipeline_processor.hpp"
 #include "real_time.hpp"
 #include "running_config.hpp"
 #include "scree/app/daemon.hpp"
@@ -15,7 +17,6 @@
 #include "scree/sync/clocks.hpp"
 #include "service_manager.hpp"
 #include "supervisor.hpp"
-#include "triple_buffer.hpp"
 
 namespace {
 
@@ -27,36 +28,7 @@ int failed(const std::string& reason) {
   return kFailed;
 }
 
-scree::MotionReport motion_of(scree::Pipeline& pipeline) {
-  scree::MotionReport report;
-  report.slips = pipeline.mapper().slips();
-  report.heading_resets = pipeline.sensors().heading().taken_out();
-  if (!pipeline.uses_map()) return report;
-  const scree::PoseFilter& filter = pipeline.mapper().filter();
-  report.position_deviation = filter.position_deviation().head<2>().maxCoeff();
-  report.yaw_deviation = filter.rotation_deviation().z();
-  return report;
-}
-
-scree::Process process_of(scree::Pipeline& pipeline,
-                          scree::TripleBuffer<scree::TrackingSettings>& tracking) {
-  return [&pipeline, &tracking, all = scree::Dropped()](
-             const scree::Sweep& sweep, scree::Work& work) mutable -> const scree::ObstacleList* {
-    pipeline.set_tracking(tracking.get());
-    const scree::ObstacleList& list = pipeline.process(sweep);
-    const scree::StageCounts counts = pipeline.counts();
-    all.points += counts.dropped;
-    all.points_refused += counts.refused;
-    all.edge_points += counts.candidates_dropped;
-    all.obstacles += counts.obstacles_dropped;
-    all.map_points = pipeline.mapper().map().dropped();
-    all.tracks = pipeline.tracker().dropped();
-    work = {all, motion_of(pipeline), pipeline.stage_times()};
-    return pipeline.has_looked() ? &list : nullptr;
-  };
-}
-
-/// Valid as long as the lines are held.
+/// The result is valid as long as the lines are held.
 scree::RobotLines robot_lines(scree::gpio::Lines& held) {
   const auto setter = [](std::optional<scree::gpio::Output>& line) -> scree::RobotLines::Set {
     if (!line) return {};
@@ -84,7 +56,7 @@ scree::Result<scree::RunningConfig> read_config(const std::filesystem::path& fil
   return config;
 }
 
-/// Of the configuration and of all that it names; nothing is opened or started.
+/// Checks the configuration and all that it names; nothing is opened or started.
 int check(const std::filesystem::path& file) {
   const auto config = read_config(file);
   if (!config) return failed(config.error().message);
@@ -100,20 +72,18 @@ int run(const std::filesystem::path& file) {
   if (!lines) return failed(lines.error().message);
   auto pipeline = scree::Pipeline::make(settings, file);
   if (!pipeline) return failed(pipeline.error().message);
-
   pipeline->time_stages(scree::steady_ns);
 
-  scree::TripleBuffer<scree::TrackingSettings> tracking;
-  tracking.put(settings.track);
+  scree::PipelineProcessor processor(*pipeline, settings.track);
   const scree::Signals signals;
-  auto daemon = scree::Daemon::start(settings, process_of(*pipeline, tracking),
-                                     &pipeline->sensors(), robot_lines(*lines));
+  auto daemon = scree::Daemon::start(settings, std::ref(processor), &pipeline->sensors(),
+                                     robot_lines(*lines));
   if (!daemon) return failed(daemon.error().message);
   scree::lock_memory();
 
   const int signal = scree::supervise(**daemon, signals, [&] {
     if (!config->reread()) return;
-    tracking.put(settings.track);
+    processor.set_tracking(settings.track);
     (*daemon)->apply(settings);
   });
   spdlog::info("stopping: {}", signal == SIGINT ? "interrupted" : "asked to terminate");

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "scree/app/daemon.hpp"
+#include "scree/app/detection_report.hpp"
 #include "scree/core/obstacle.hpp"
 
 namespace scree {
@@ -24,7 +24,7 @@ struct TimedObstacleList {
   ObstacleList list;
   std::int64_t arrival_ns = 0;   ///< of the sweep's last packet, monotonic clock
   std::int64_t detector_ns = 0;  ///< how long the detector worked
-  Work work;
+  DetectionReport report;
 };
 
 }  // namespace scree

@@ -78,7 +78,7 @@ protected:
     listener_.emplace(settings_.lcm.url);
   }
   /// Stands for the detector: an obstacle in each sweep.
-  const ObstacleList* process(const Sweep& sweep, Work& work) {
+  const ObstacleList* process(const Sweep& sweep, DetectionReport& report) {
     while (is_stuck_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     found_.stamp_ns = sweep.end_ns;
     sweep_age_ns_ = nanoseconds_of<Clock>() - sweep.end_ns;
@@ -88,16 +88,17 @@ protected:
     rock.center.x() = rock_x_;
     rock.points = static_cast<std::uint32_t>(sweep.points.size());
     found_.obstacles.push_back(rock);
-    work.dropped = {1, 2, 3, 4, 5, 6};
-    work.motion = {0.5, 0.25, 7, 8};
-    work.stage_times.fill(kDidNotRun);
-    work.stage_times[static_cast<std::size_t>(Stage::gradient)] = 7'000'000;
+    report.drops = {1, 2, 3, 4, 5, 6};
+    report.motion = {0.5, 0.25, 7, 8};
+    report.stage_times.fill(kDidNotRun);
+    report.stage_times[static_cast<std::size_t>(Stage::gradient)] = 7'000'000;
     return looks_ ? &found_ : nullptr;
   }
   std::unique_ptr<Daemon> start(SyncBuffer* sensors = nullptr) {
     auto daemon = Daemon::start(
-        settings_, [this](const Sweep& sweep, Work& work) { return process(sweep, work); }, sensors,
-        lines_);
+        settings_,
+        [this](const Sweep& sweep, DetectionReport& report) { return process(sweep, report); },
+        sensors, lines_);
     EXPECT_TRUE(daemon) << daemon.error().message;
     return std::move(*daemon);
   }

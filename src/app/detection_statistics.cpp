@@ -1,4 +1,4 @@
-#include "work_watch.hpp"
+#include "detection_statistics.hpp"
 
 #include <utility>
 
@@ -13,17 +13,18 @@ latency_t summary(const LatencyHistogram& histogram) {
 
 }  // namespace
 
-void WorkWatch::see(std::int64_t latency_ns, std::int64_t detector_ns, const Work& work) {
+void DetectionStatistics::record(std::int64_t latency_ns, std::int64_t detector_ns,
+                                 const DetectionReport& report) {
   latency_.record(latency_ns);
   detector_.record(detector_ns);
   for (std::size_t i = 0; i < stages_.size(); ++i) {
-    if (work.stage_times[i] != kDidNotRun) stages_[i].record(work.stage_times[i]);
+    if (report.stage_times[i] != kDidNotRun) stages_[i].record(report.stage_times[i]);
   }
-  dropped_ = work.dropped;
-  motion_ = work.motion;
+  drops_ = report.drops;
+  motion_ = report.motion;
 }
 
-void WorkWatch::fill(health_t& health) const {
+void DetectionStatistics::fill(health_t& health) const {
   health.latency = summary(latency_);
   health.detector_time = summary(detector_);
   health.stages.clear();
@@ -33,11 +34,11 @@ void WorkWatch::fill(health_t& health) const {
   }
   health.stages_size = static_cast<std::int32_t>(health.stages.size());
   const auto count = [](std::uint64_t value) { return static_cast<std::int64_t>(value); };
-  health.points_refused = count(dropped_.points_refused);
-  health.edge_points_dropped = count(dropped_.edge_points);
-  health.obstacles_dropped = count(dropped_.obstacles);
-  health.map_points_dropped = count(dropped_.map_points);
-  health.tracks_dropped = count(dropped_.tracks);
+  health.points_refused = count(drops_.points_refused);
+  health.edge_points_dropped = count(drops_.edge_points);
+  health.obstacles_dropped = count(drops_.obstacles);
+  health.map_points_dropped = count(drops_.map_points);
+  health.tracks_dropped = count(drops_.tracks);
   health.sweeps_slipped = count(motion_.slips);
   health.heading_resets = count(motion_.heading_resets);
   health.position_deviation = motion_.position_deviation;

@@ -5,7 +5,7 @@
 #include <scree/health_t.hpp>
 #include <string>
 
-#include "scree/app/daemon.hpp"
+#include "scree/app/detection_report.hpp"
 #include "scree/core/latency_histogram.hpp"
 #include "scree/core/queue_depth.hpp"
 
@@ -13,23 +13,23 @@ namespace scree {
 
 /// Sums up how the daemon's own work goes, for health: how long it takes, and what found no room.
 /// One thread may use it.
-class WorkWatch {
+class DetectionStatistics {
 public:
   /// A list was published.
   /// @param latency_ns from its sweep's last packet
   /// @param detector_ns of it in the detector
-  void see(std::int64_t latency_ns, std::int64_t detector_ns, const Work& work);
+  void record(std::int64_t latency_ns, std::int64_t detector_ns, const DetectionReport& report);
 
   /// Fills in the latencies and what the detector dropped, but for points_dropped.
   void fill(health_t& health) const;
   /// What the detector has dropped up to now.
-  const Dropped& dropped() const { return dropped_; }
+  const DropCounts& drops() const { return drops_; }
   const MotionReport& motion() const { return motion_; }
 
 private:
   LatencyHistogram latency_, detector_;
   std::array<LatencyHistogram, kStageNames.size()> stages_;
-  Dropped dropped_;
+  DropCounts drops_;
   MotionReport motion_;
 };
 

@@ -1,0 +1,67 @@
+#include "app/pipeline_processor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "terrain/rough_ground.hpp"
+
+namespace scree {
+namespace {
+
+Settings small_settings() {
+  Settings settings;
+  settings.lidar = test::usual_lidar();
+  settings.map.max_points = 1 << 13;
+  settings.map.max_voxels = settings.detect_map.max_points = 1 << 16;
+  settings.detect_sweep.max_points = settings.detect_sweep.max_edge_points = 2;
+  return settings;
+}
+
+class PipelineProcessorTest : public testing::Test {
+protected:
+  const ObstacleList* process(const Sweep& sweep) { return processor_(sweep, report_); }
+  static Sweep row_of_points(int points) {
+    Sweep sweep(static_cast<std::size_t>(points));
+    for (int i = 1; i <= points; ++i) sweep.push_back({static_cast<float>(i), 0, 0}, 7, 0, 0);
+    return sweep;
+  }
+
+  Settings settings_ = small_settings();
+  Pipeline pipeline_{settings_, Detector(settings_.detect_map, Network()),
+                     Detector(settings_.detect_sweep, Network())};
+  PipelineProcessor processor_{pipeline_, settings_.track};
+  DetectionReport report_;
+};
+
+TEST_F(PipelineProcessorTest, SumsUpWhatWasDroppedSweepBySweep) {
+  EXPECT_NE(process(row_of_points(5)), nullptr);
+  EXPECT_EQ(report_.drops.points, 3U);
+  process(row_of_points(6));
+  EXPECT_EQ(report_.drops.points, 7U);
+}
+
+TEST_F(PipelineProcessorTest, GivesNoListOfASweepThatIsNotAWholeTurn) {
+  Sweep sweep = row_of_points(2);
+  sweep.is_whole = false;
+  EXPECT_EQ(process(sweep), nullptr);
+}
+
+TEST_F(PipelineProcessorTest, KnowsHowWellThePoseIsKnownOnlyWithAMap) {
+  process(row_of_points(2));
+  EXPECT_TRUE(std::isnan(report_.motion.position_deviation));
+  EXPECT_TRUE(std::isnan(report_.motion.yaw_deviation));
+  const test::SimpleDrive drive = test::helix(1, 0.2, 0);
+  drive.put_imu(pipeline_.sensors(), 0, 1);
+  drive.put_wheel(pipeline_.sensors(), 0, 1);
+  Sweep sweep(1 << 13);
+  for (const double end : {0.2, 0.3, 0.4}) {
+    test::scan(test::RoughGround(), drive, settings_.lidar, end, sweep);
+    process(sweep);
+  }
+  EXPECT_GT(report_.motion.position_deviation, 0);
+  EXPECT_GT(report_.motion.yaw_deviation, 0);
+}
+
+}  // namespace
+}  // namespace scree
