@@ -19,6 +19,7 @@
 #include "output_lines.hpp"
 #include "page_faults.hpp"
 #include "real_time.hpp"
+#include "scree/app/motion_wait.hpp"
 #include "scree/publish/publisher.hpp"
 #include "scree/sync/clocks.hpp"
 #include "spsc_pool.hpp"
@@ -50,6 +51,7 @@ public:
         outputs_(settings.stop, lines),
         watch_(settings, steady_ns()) {
     health_.version = SCREE_VERSION;
+    if (sensors_ != nullptr) wait_.emplace(*sensors_, settings.map.wait);
     Threads::apply(settings);
     if (sensors_ != nullptr) {
       imu_.emplace(settings.imu, *sensors_);
@@ -80,7 +82,7 @@ public:
 
   void apply(const Settings& settings) override {
     zone_.put(settings.stop);
-    wait_ns_ = static_cast<std::int64_t>(settings.map.wait * 1e9);
+    if (wait_) wait_->set_limit(settings.map.wait);
   }
 
   std::string status() override {
@@ -123,14 +125,9 @@ private:
 
   void wait_for_motion(const TimedSweep& sweep) {
     constexpr std::chrono::milliseconds kPause{1};
-    while (sensors_ != nullptr && !stop_) {
+    while (wait_ && !stop_) {
       go_round();
-      sensors_->gather();
-      if (sensors_->covers(sweep.sweep.end_ns)) return;
-      if (steady_ns() - sweep.arrival_ns >= wait_ns_) {
-        not_covered_.fetch_add(1, std::memory_order_relaxed);
-        return;
-      }
+      if (wait_->is_over(sweep.sweep.end_ns, sweep.arrival_ns, steady_ns())) return;
       std::this_thread::sleep_for(kPause);
     }
   }
@@ -191,8 +188,8 @@ private:
     outputs_.set_zone(zone_.get());
     const LidarStatus& lidar = reader_.status();
     const DetectorStatus detector{last_round_ns_.load(std::memory_order_relaxed), last_list_ns_,
-                                  not_covered_.load(std::memory_order_relaxed),
-                                  statistics_.motion().slips, statistics_.motion().heading_resets};
+                                  (wait_ ? wait_->not_covered() : 0), statistics_.motion().slips,
+                                  statistics_.motion().heading_resets};
     bool has_changed =
         watch_.update(now, lidar, imu_ ? imu_->status() : ImuStatus(),
                       encoder_ ? encoder_->status() : EncoderStatus(), detector, health_);
@@ -238,7 +235,7 @@ private:
     health_.sweeps = count(lidar.lidar.sweeps);
     health_.sweeps_dropped = count(lidar.sweeps_dropped);
     health_.sweeps_empty = count(lidar.sweeps_empty);
-    health_.sweeps_not_covered = count(not_covered_.load(std::memory_order_relaxed));
+    health_.sweeps_not_covered = count((wait_ ? wait_->not_covered() : 0));
     health_.points_dropped = count(lidar.lidar.dropped + statistics_.drops().points);
     health_.lists_dropped = lists_dropped_.load(std::memory_order_relaxed);
     health_.queues = {queue_message("sweeps", sweeps_.fill()),
@@ -266,13 +263,12 @@ private:
   SweepPool sweeps_;
   SpscPool<TimedObstacleList> lists_;
   std::atomic<std::int64_t> lists_dropped_{0}, last_round_ns_{steady_ns()};
-  std::atomic<std::uint64_t> not_covered_{0};
   LidarReader reader_;
   std::optional<ImuReader> imu_;
   std::optional<EncoderReader> encoder_;
   SweepProcessor process_;
   SyncBuffer* sensors_;
-  std::atomic<std::int64_t> wait_ns_{0};
+  std::optional<MotionWait> wait_;
   TripleBuffer<StopSettings> zone_;
 
   // Of the publishing thread alone.

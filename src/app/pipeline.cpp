@@ -61,11 +61,6 @@ Pipeline::Pipeline(const Settings& settings, const Networks& networks)
       found_(static_cast<std::size_t>(settings.memory.obstacles)),
       list_(static_cast<std::size_t>(settings.memory.obstacles)) {}
 
-bool Pipeline::is_covered(std::int64_t end_ns) {
-  sensors_->gather();
-  return sensors_->covers(end_ns);
-}
-
 const ObstacleList& Pipeline::process(const Sweep& sweep) {
   timer_.start();
   sensors_->gather();

@@ -51,7 +51,7 @@ PipelineCapture::PipelineCapture(const std::filesystem::path& capture,
       motion_(capture, config, settings_, pipeline_.sensors()) {}
 
 void PipelineCapture::play(const std::function<void(const Sweep&)>& process) {
-  WaitingSweeps waiting(settings_.map.wait, pipeline_, process);
+  WaitingSweeps waiting(settings_.map.wait, pipeline_.sensors(), process);
   std::int64_t now_ns = 0;
   velodyne::LidarStream stream(settings_.lidar, [&](Sweep& sweep) {
     if (!sweep.points.empty()) waiting.push(sweep, now_ns);

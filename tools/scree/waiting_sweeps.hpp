@@ -6,7 +6,8 @@
 #include <functional>
 #include <utility>
 
-#include "scree/app/pipeline.hpp"
+#include "scree/app/motion_wait.hpp"
+#include "scree/core/sweep.hpp"
 
 namespace scree::cli {
 
@@ -14,36 +15,30 @@ namespace scree::cli {
 /// of the capture.
 class WaitingSweeps {
 public:
-  /// Keeps a reference to the pipeline.
-  WaitingSweeps(double wait_s, Pipeline& pipeline, std::function<void(const Sweep&)> process)
-      : wait_ns_(static_cast<std::int64_t>(wait_s * 1e9)),
-        pipeline_(pipeline),
-        process_(std::move(process)) {}
+  /// Keeps a reference to the buffer.
+  WaitingSweeps(double wait_s, SyncBuffer& sensors, std::function<void(const Sweep&)> process)
+      : wait_(sensors, wait_s), process_(std::move(process)) {}
 
   void push(const Sweep& sweep, std::int64_t arrival_ns) {
-    waiting_.emplace_back(copy(sweep), arrival_ns + wait_ns_);
+    waiting_.emplace_back(copy(sweep), arrival_ns);
     process_ready(arrival_ns);
   }
   bool has_any() const { return !waiting_.empty(); }
   /// Processes those that are covered, or have waited long enough.
   void process_ready(std::int64_t now_ns) {
     while (!waiting_.empty()) {
-      const auto& [sweep, due_ns] = waiting_.front();
-      const bool is_covered = pipeline_.is_covered(sweep.end_ns);
-      if (now_ns < due_ns && !is_covered) return;
-      if (!is_covered) ++not_covered_;
+      const auto& [sweep, arrival_ns] = waiting_.front();
+      if (!wait_.is_over(sweep.end_ns, arrival_ns, now_ns)) return;
       process_(sweep);
       waiting_.pop_front();
     }
   }
   /// At the end of the capture, after which no sample comes.
   void process_all() {
-    const std::size_t before = not_covered_;
-    process_ready(INT64_MAX);
-    not_covered_ = before;
+    for (; !waiting_.empty(); waiting_.pop_front()) process_(waiting_.front().first);
   }
   /// Sweeps that waited in vain.
-  std::size_t not_covered() const { return not_covered_; }
+  std::uint64_t not_covered() const { return wait_.not_covered(); }
 
 private:
   static Sweep copy(const Sweep& sweep) {
@@ -60,11 +55,9 @@ private:
     return copied;
   }
 
-  std::int64_t wait_ns_;
-  Pipeline& pipeline_;
+  MotionWait wait_;
   std::function<void(const Sweep&)> process_;
-  std::deque<std::pair<Sweep, std::int64_t>> waiting_;
-  std::size_t not_covered_ = 0;
+  std::deque<std::pair<Sweep, std::int64_t>> waiting_;  // with their arrival
 };
 
 }  // namespace scree::cli

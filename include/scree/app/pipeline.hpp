@@ -36,8 +36,6 @@ public:
 
   /// Where the IMU's and the encoder's threads put their samples.
   SyncBuffer& sensors() { return *sensors_; }
-  /// Takes over what they have put; whether nothing is missing for a sweep that ended then.
-  bool is_covered(std::int64_t end_ns);
   /// @return the list of this sweep; valid until the next call
   const ObstacleList& process(const Sweep& sweep);
   /// From the next sweep on.
@@ -58,7 +56,7 @@ public:
   const Mapper& mapper() const { return *mapper_; }
   const Tracker& tracker() const { return uses_map_ ? tracker_ : sweep_tracker_; }
   bool uses_map() const { return uses_map_; }
-  /// Of the last sweep, as the detector counts; points that did not get to it are dropped ones.
+  /// What the detector counted in the last sweep; points that did not get to it are dropped ones.
   StageCounts counts() const;
 
 private:

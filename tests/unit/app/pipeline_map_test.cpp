@@ -155,15 +155,6 @@ TEST_F(PipelineMap, TimesTheStagesThatRun) {
   }
 }
 
-TEST_F(PipelineMap, WaitsForWhatIsStillToCome) {
-  EXPECT_TRUE(pipeline_.is_covered(test::nanoseconds(1))) << "no sensor, nothing to wait for";
-  drive_.put_imu(pipeline_.sensors(), 0, 1);
-  EXPECT_FALSE(pipeline_.is_covered(test::nanoseconds(1)));
-  drive_.put_imu(pipeline_.sensors(), 1, 1.02);
-  EXPECT_TRUE(pipeline_.is_covered(test::nanoseconds(1)));
-  EXPECT_TRUE(pipeline_.is_covered(test::nanoseconds(9))) << "silent for long";
-}
-
 TEST_F(PipelineMap, NothingIsAllocatedAfterTheStart) {
   const std::size_t before = test::allocations();
   go(3, false);
