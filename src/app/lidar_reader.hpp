@@ -8,21 +8,14 @@
 #include "scree/app/robot_lines.hpp"
 #include "scree/config/settings.hpp"
 #include "scree/core/result.hpp"
-#include "scree/core/sweep.hpp"
 #include "scree/drivers/velodyne/lidar_stream.hpp"
 #include "scree/drivers/velodyne/udp_receiver.hpp"
 #include "scree/sync/host_clock.hpp"
 #include "sensor_status.hpp"
-#include "spsc_pool.hpp"
+#include "timed_sweep.hpp"
 #include "triple_buffer.hpp"
 
 namespace scree {
-
-struct TimedSweep {
-  Sweep sweep{velodyne::kSweepCapacity};
-  std::int64_t arrival_ns = 0;  ///< of the packet that completed it, monotonic clock
-};
-using SweepPool = SpscPool<TimedSweep>;
 
 /// The lidar's two ports, bound.
 struct LidarPorts {

@@ -24,8 +24,8 @@ void OutputLine::set(bool is_on) {
 OutputLines::OutputLines(const StopSettings& zone, const RobotLines& lines)
     : decision_(zone), stop_("stop", lines.stop), heartbeat_("heartbeat", lines.heartbeat) {}
 
-void OutputLines::see(const ObstacleList& list, std::int64_t now_ns) {
-  decision_.see(list, now_ns);
+void OutputLines::update(const ObstacleList& list, std::int64_t now_ns) {
+  decision_.update(list, now_ns);
   stop_.set(decision_.is_on(now_ns));
 }
 
@@ -34,9 +34,9 @@ void OutputLines::set_blind(bool is_blind, std::int64_t now_ns) {
   stop_.set(decision_.is_on(now_ns));
 }
 
-void OutputLines::beat() {
-  beats_on_ = !beats_on_;
-  heartbeat_.set(beats_on_);
+void OutputLines::toggle_heartbeat() {
+  is_heartbeat_on_ = !is_heartbeat_on_;
+  heartbeat_.set(is_heartbeat_on_);
 }
 
 const std::string& OutputLines::problem() const {

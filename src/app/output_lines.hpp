@@ -33,10 +33,10 @@ public:
   OutputLines(const StopSettings& zone, const RobotLines& lines);
 
   void set_zone(const StopSettings& zone) { decision_.set_zone(zone); }
-  void see(const ObstacleList& list, std::int64_t now_ns);
+  void update(const ObstacleList& list, std::int64_t now_ns);
   void set_blind(bool is_blind, std::int64_t now_ns);
-  /// The heartbeat changes its level.
-  void beat();
+  /// Changes the level of the heartbeat.
+  void toggle_heartbeat();
 
   bool is_stopped(std::int64_t now_ns) const { return decision_.is_on(now_ns); }
   /// Of the stop line, else of the heartbeat; see OutputLine.
@@ -45,7 +45,7 @@ public:
 private:
   StopLine decision_;
   OutputLine stop_, heartbeat_;
-  bool beats_on_ = false;
+  bool is_heartbeat_on_ = false;
 };
 
 }  // namespace scree

@@ -6,6 +6,7 @@
 
 #include "scree/app/detection_report.hpp"
 #include "scree/core/obstacle.hpp"
+#include "spsc_pool.hpp"
 
 namespace scree {
 
@@ -22,9 +23,10 @@ struct TimedObstacleList {
   }
 
   ObstacleList list;
-  std::int64_t arrival_ns = 0;   ///< of the sweep's last packet, monotonic clock
+  std::int64_t arrival_ns = 0;   ///< when the sweep's last packet came, monotonic clock
   std::int64_t detector_ns = 0;  ///< how long the detector worked
   DetectionReport report;
 };
+using ObstacleListPool = SpscPool<TimedObstacleList>;
 
 }  // namespace scree

@@ -25,7 +25,7 @@ bool is_in_zone(const StopSettings& zone, const Pose& pose, const Obstacle& obst
          !are_apart_along(along) && !are_apart_along(across);
 }
 
-void StopLine::see(const ObstacleList& list, std::int64_t now_ns) {
+void StopLine::update(const ObstacleList& list, std::int64_t now_ns) {
   hold(now_ns);
   is_obstructed_ = std::any_of(
       list.obstacles.begin(), list.obstacles.end(),

@@ -21,7 +21,7 @@ public:
   /// From the next list on.
   void set_zone(const StopSettings& settings) { settings_ = settings; }
 
-  void see(const ObstacleList& list, std::int64_t now_ns);
+  void update(const ObstacleList& list, std::int64_t now_ns);
   void set_blind(bool is_blind, std::int64_t now_ns);
 
   bool is_on(std::int64_t now_ns) const;

@@ -50,13 +50,13 @@ TEST(OutputLines, StopsForBlindnessAndForAnObstacleAtOnceAndHoldsBoth) {
   EXPECT_TRUE(lines.is_stopped(0));
   lines.set_blind(true, 0);
   lines.set_blind(false, 10 * kMillisecond);
-  lines.see(list_with_rock_at(9), 500 * kMillisecond);
+  lines.update(list_with_rock_at(9), 500 * kMillisecond);
   EXPECT_THAT(stop.levels, ElementsAre(true));
   lines.set_blind(false, 510 * kMillisecond);
   EXPECT_THAT(stop.levels, ElementsAre(true, false));
-  lines.see(list_with_rock_at(1), 600 * kMillisecond);
+  lines.update(list_with_rock_at(1), 600 * kMillisecond);
   EXPECT_THAT(stop.levels, ElementsAre(true, false, true)) << "without waiting for a look";
-  lines.see(list_with_rock_at(9), 700 * kMillisecond);
+  lines.update(list_with_rock_at(9), 700 * kMillisecond);
   lines.set_blind(false, 1199 * kMillisecond);
   EXPECT_THAT(stop.levels, ElementsAre(true, false, true));
   lines.set_blind(false, 1200 * kMillisecond);
@@ -68,7 +68,7 @@ TEST(OutputLines, StopsForBlindnessAndForAnObstacleAtOnceAndHoldsBoth) {
 TEST(OutputLines, HeartbeatChangesWithEachBeat) {
   Line heartbeat;
   OutputLines lines(kZone, {{}, heartbeat.setter(), {}});
-  for (int i = 0; i < 4; ++i) lines.beat();
+  for (int i = 0; i < 4; ++i) lines.toggle_heartbeat();
   EXPECT_THAT(heartbeat.levels, ElementsAre(true, false, true, false));
 }
 
@@ -78,7 +78,7 @@ TEST(OutputLines, ALineThatCannotBeSetIsSaidAndTriedUntilItCan) {
   lines.set_blind(true, 0);
   EXPECT_EQ(lines.problem(), "");
   heartbeat.is_gone = true;
-  lines.beat();
+  lines.toggle_heartbeat();
   EXPECT_THAT(lines.problem(), HasSubstr("the heartbeat line cannot be set"));
   stop.is_gone = true;
   for (int i = 1; i <= 4; ++i) lines.set_blind(true, i * 100 * kMillisecond);
@@ -87,7 +87,7 @@ TEST(OutputLines, ALineThatCannotBeSetIsSaidAndTriedUntilItCan) {
   stop.plug_in_again();
   heartbeat.is_gone = false;
   lines.set_blind(true, 900 * kMillisecond);
-  lines.beat();
+  lines.toggle_heartbeat();
   EXPECT_EQ(lines.problem(), "");
   EXPECT_THAT(stop.levels, ElementsAre(true));
 }
@@ -104,8 +104,8 @@ TEST(OutputLines, AChipThatWasUnpluggedForAMomentGetsItsLevelAgain) {
 TEST(OutputLines, WithoutLinesTheDecisionIsStillMade) {
   OutputLines lines(kZone, {});
   lines.set_blind(false, 0);
-  lines.see(list_with_rock_at(9), 0);
-  lines.beat();
+  lines.update(list_with_rock_at(9), 0);
+  lines.toggle_heartbeat();
   EXPECT_FALSE(lines.is_stopped(501 * kMillisecond));
   EXPECT_EQ(lines.problem(), "");
 }

@@ -107,7 +107,7 @@ ObstacleList list_of(const std::vector<Obstacle>& obstacles) {
 TEST(StopLine, BeginsBlindAndOn) {
   StopLine line(kZone);
   EXPECT_TRUE(line.is_on(0));
-  line.see(list_of({}), 0);
+  line.update(list_of({}), 0);
   EXPECT_TRUE(line.is_on(9'000 * kMillisecond));
   line.set_blind(false, 9'000 * kMillisecond);
   EXPECT_TRUE(line.is_on(9'499 * kMillisecond));
@@ -118,12 +118,12 @@ TEST(StopLine, IsOnWhileAnObstacleIsAheadAndHeldAfter) {
   StopLine line(kZone);
   line.set_blind(false, 0);
   std::int64_t now = 1'000 * kMillisecond;
-  line.see(list_of({box(5, 0, 0.2, 0.2)}), now);
+  line.update(list_of({box(5, 0, 0.2, 0.2)}), now);
   EXPECT_FALSE(line.is_on(now));
-  line.see(list_of({box(5, 0, 0.2, 0.2), box(1, 0, 0.2, 0.2)}), now += 100 * kMillisecond);
+  line.update(list_of({box(5, 0, 0.2, 0.2), box(1, 0, 0.2, 0.2)}), now += 100 * kMillisecond);
   EXPECT_TRUE(line.is_on(now));
   EXPECT_TRUE(line.is_on(now + 5'000 * kMillisecond));
-  line.see(list_of({box(5, 0, 0.2, 0.2)}), now += 100 * kMillisecond);
+  line.update(list_of({box(5, 0, 0.2, 0.2)}), now += 100 * kMillisecond);
   EXPECT_TRUE(line.is_on(now + 499 * kMillisecond));
   EXPECT_FALSE(line.is_on(now + 500 * kMillisecond));
   line.set_blind(true, now += 1'000 * kMillisecond);

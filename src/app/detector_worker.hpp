@@ -1,0 +1,57 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <optional>
+
+#include "loop_counter.hpp"
+#include "scree/app/motion_wait.hpp"
+#include "scree/app/sweep_processor.hpp"
+#include "scree/sync/clocks.hpp"
+#include "timed_obstacle_list.hpp"
+#include "timed_sweep.hpp"
+
+namespace scree {
+
+/// Takes sweeps from their pool, lets each wait for the motion that covers it, has it processed and
+/// passes the list on. run() is the work of a thread.
+class DetectorWorker {
+public:
+  /// Keeps references to the buffer and to both pools.
+  /// @param sensors without them sweeps wait for nothing
+  DetectorWorker(SweepProcessor process, SyncBuffer* sensors, double max_wait_s, SweepPool& sweeps,
+                 ObstacleListPool& lists);
+
+  /// Returns after stop() was called from another thread.
+  void run();
+  void stop();
+
+  // Any thread.
+
+  /// How long a sweep waits at most for the motion that covers it, seconds.
+  void set_max_wait(double seconds);
+  const LoopCounter& loops() const { return loops_; }
+  /// Monotonic time at which the worker last waited, or began or ended with a sweep.
+  std::int64_t last_loop_ns() const { return last_loop_ns_.load(std::memory_order_relaxed); }
+  /// Sweeps that waited in vain for the motion that covers them.
+  std::uint64_t not_covered() const { return wait_ ? wait_->not_covered() : 0; }
+  /// Lists that found the publisher busy with all older ones.
+  std::uint64_t lists_dropped() const { return lists_dropped_.load(std::memory_order_relaxed); }
+
+private:
+  void note_loop();
+  void wait_for_motion(const TimedSweep& sweep);
+  void process(const TimedSweep& sweep);
+
+  SweepProcessor process_;
+  SyncBuffer* sensors_;
+  std::optional<MotionWait> wait_;
+  SweepPool& sweeps_;
+  ObstacleListPool& lists_;
+  LoopCounter loops_;
+  std::atomic<bool> is_stopped_{false};
+  std::atomic<std::int64_t> last_loop_ns_{steady_ns()};
+  std::atomic<std::uint64_t> lists_dropped_{0};
+};
+
+}  // namespace scree

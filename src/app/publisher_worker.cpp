@@ -1,0 +1,150 @@
+#include "publisher_worker.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <utility>
+
+#include "page_faults.hpp"
+#include "scree/core/nanoseconds.hpp"
+#include "scree/sync/clocks.hpp"
+
+namespace scree {
+namespace {
+
+// Health is checked often enough that what stops is published within 300 ms (see HealthWatch).
+constexpr std::chrono::milliseconds kCheckInterval{20};
+constexpr std::int64_t kHealthIntervalNs = kSecond;
+
+std::int64_t count(std::uint64_t value) {
+  return static_cast<std::int64_t>(value);
+}
+
+}  // namespace
+
+PublisherWorker::PublisherWorker(const Settings& settings, const RobotLines& lines,
+                                 Publisher publisher, ObstacleListPool& lists, GetStatus get_status,
+                                 const ThreadWatchdog& threads)
+    : publisher_(std::move(publisher)),
+      lists_(lists),
+      get_status_(std::move(get_status)),
+      threads_(threads),
+      outputs_(settings.stop, lines),
+      watch_(settings, steady_ns()),
+      last_health_ns_(steady_ns()) {
+  health_.version = SCREE_VERSION;
+  set_zone(settings.stop);
+}
+
+void PublisherWorker::run() {
+  std::int64_t next_check_ns = steady_ns();
+  while (!is_stopped_) {
+    loops_.increment();
+    const std::int64_t now_ns = steady_ns();
+    if (now_ns >= next_check_ns) {
+      update_health(now_ns);
+      next_check_ns = now_ns + std::chrono::nanoseconds(kCheckInterval).count();
+    }
+    lists_.wait(kCheckInterval);
+    while (TimedObstacleList* timed = lists_.pop()) {
+      publish(*timed);
+      lists_.release(timed);
+    }
+  }
+  health_.state = health_t::BLIND;
+  health_.reason = "screed was stopped";
+  const std::int64_t now_ns = steady_ns();
+  drive_outputs(now_ns);
+  status_ = get_status_();
+  publish_health(now_ns);
+}
+
+void PublisherWorker::stop() {
+  is_stopped_ = true;
+  lists_.wake();
+}
+
+std::string PublisherWorker::sentence() {
+  const std::scoped_lock lock(sentence_mutex_);
+  return sentence_;
+}
+
+void PublisherWorker::publish(TimedObstacleList& timed) {
+  outputs_.update(timed.list, steady_ns());
+  timed.list.stamp_ns = clock_.to_real(timed.list.stamp_ns, read_clocks());
+  const bool is_taken = publisher_.publish(timed.list);
+  const std::int64_t now_ns = steady_ns(), latency_ns = now_ns - timed.arrival_ns;
+  statistics_.record(latency_ns, timed.detector_ns, timed.report);
+  ++(is_taken ? health_.lists_published : health_.lists_failed);
+  if (!is_taken) return;
+  outputs_.toggle_heartbeat();
+  if (latency_ns <= HealthWatch::kOldSweep) last_list_ns_ = now_ns;
+}
+
+void PublisherWorker::update_health(std::int64_t now_ns) {
+  outputs_.set_zone(zone_.get());
+  status_ = get_status_();
+  const DetectorStatus detector{status_.detector_loop_ns, last_list_ns_, status_.sweeps_not_covered,
+                                statistics_.motion().slips, statistics_.motion().heading_resets};
+  bool has_changed =
+      watch_.update(now_ns, status_.lidar, status_.imu, status_.encoder, detector, health_);
+  has_changed = drive_outputs(now_ns) || has_changed;
+  for (const auto& [is_warning, text] : watch_.log()) {
+    spdlog::log(is_warning ? spdlog::level::warn : spdlog::level::info, text);
+  }
+  if (has_changed || now_ns - last_health_ns_ >= kHealthIntervalNs) publish_health(now_ns);
+}
+
+/// True when what health says of them changed.
+bool PublisherWorker::drive_outputs(std::int64_t now_ns) {
+  outputs_.set_blind(health_.state == health_t::BLIND, now_ns);
+  const bool has_stopped = outputs_.is_stopped(now_ns);
+  const bool has_changed =
+      health_.stop != has_stopped || health_.lines_problem != outputs_.problem();
+  health_.stop = has_stopped ? 1 : 0;
+  health_.lines_problem = outputs_.problem();
+  return has_changed;
+}
+
+void PublisherWorker::publish_health(std::int64_t now_ns) {
+  update_sentence();
+  health_.stamp_ns = wall_ns();
+  fill_counts();
+  fill_computer();
+  if (!publisher_.publish(health_)) spdlog::warn("LCM does not take the health message");
+  last_health_ns_ = now_ns;
+}
+
+void PublisherWorker::fill_counts() {
+  statistics_.fill(health_);
+  health_.sweeps = count(status_.lidar.lidar.sweeps);
+  health_.sweeps_dropped = count(status_.lidar.sweeps_dropped);
+  health_.sweeps_empty = count(status_.lidar.sweeps_empty);
+  health_.sweeps_not_covered = count(status_.sweeps_not_covered);
+  health_.points_dropped = count(status_.lidar.lidar.dropped + statistics_.drops().points);
+  health_.lists_dropped = count(status_.lists_dropped);
+  health_.samples_dropped = count(status_.samples_dropped);
+  health_.samples_refused = count(status_.samples_refused);
+  health_.queues = status_.queues;
+  health_.queues_size = static_cast<std::int32_t>(health_.queues.size());
+}
+
+void PublisherWorker::fill_computer() {
+  health_.threads.clear();
+  for (const PageFaults& faults : page_faults()) {
+    if (!threads_.watches(faults.thread)) continue;
+    health_.threads.push_back({faults.thread, faults.minor, faults.major});
+  }
+  health_.threads_size = static_cast<std::int32_t>(health_.threads.size());
+  health_.processor_temperature = thermometer_.celsius();
+}
+
+void PublisherWorker::update_sentence() {
+  std::string sentence = health_.state == health_t::BLIND ? "blind: " + health_.reason
+                         : health_.stop != 0              ? "sees, and says stop"
+                                                          : "sees";
+  const std::scoped_lock lock(sentence_mutex_);
+  sentence_ = std::move(sentence);
+}
+
+}  // namespace scree

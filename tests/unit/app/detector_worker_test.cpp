@@ -1,0 +1,154 @@
+#include "app/detector_worker.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <thread>
+
+#include "scree/core/nanoseconds.hpp"
+
+namespace scree {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr std::size_t kSweeps = 3, kLists = 2;
+// A sweep that ends shortly after the last sample: the next one is worth waiting for.
+constexpr std::int64_t kSampleNs = 1'000 * kSecond, kEndNs = kSampleNs + 10 * kMillisecond;
+
+class DetectorWorkerTest : public testing::Test {
+protected:
+  ~DetectorWorkerTest() override {
+    if (!worker_) return;
+    worker_->stop();
+    thread_.join();
+  }
+
+  void start(SyncBuffer* sensors = nullptr, double max_wait_s = 0.05) {
+    worker_.emplace(
+        [this](const Sweep& sweep, DetectionReport& report) { return process(sweep, report); },
+        sensors, max_wait_s, sweeps_, lists_);
+    thread_ = std::thread([this] { worker_->run(); });
+  }
+  /// Stands for the detector: no obstacle in each sweep.
+  const ObstacleList* process(const Sweep& sweep, DetectionReport& report) {
+    processed_ns_ = steady_ns();
+    list_.stamp_ns = sweep.end_ns;
+    report.drops.points = 7;
+    ++processed_;
+    return has_looked_ ? &list_ : nullptr;
+  }
+  /// Pushes a sweep that arrives now. @return its time of arrival
+  std::int64_t push_sweep(std::int64_t end_ns = 0) {
+    TimedSweep* item = nullptr;
+    EXPECT_TRUE(until([&] { return (item = sweeps_.acquire()) != nullptr; }));
+    const std::int64_t now_ns = steady_ns();
+    item->sweep.end_ns = end_ns;
+    item->arrival_ns = now_ns;
+    sweeps_.push(item);
+    return now_ns;
+  }
+  static ImuSample imu_sample(std::int64_t t_ns) {
+    ImuSample sample;
+    sample.has_orientation = true;
+    sample.t_ns = t_ns;
+    return sample;
+  }
+  /// Asks every millisecond until it holds; false after a minute.
+  static bool until(const std::function<bool()>& holds) {
+    for (int i = 0; i < 60'000; ++i) {
+      if (holds()) return true;
+      std::this_thread::sleep_for(milliseconds(1));
+    }
+    return false;
+  }
+  TimedObstacleList* next_list() {
+    TimedObstacleList* list = nullptr;
+    EXPECT_TRUE(until([&] { return (list = lists_.pop()) != nullptr; }));
+    return list;
+  }
+
+  SweepPool sweeps_{kSweeps, [] { return TimedSweep(); }};
+  ObstacleListPool lists_{kLists, [] { return TimedObstacleList(1); }};
+  ObstacleList list_{1};
+  std::atomic<bool> has_looked_ = true;
+  std::atomic<int> processed_ = 0;
+  std::atomic<std::int64_t> processed_ns_ = 0;
+  std::optional<DetectorWorker> worker_;
+  std::thread thread_;
+};
+
+TEST_F(DetectorWorkerTest, PassesOnTheListWithItsTimesAndReport) {
+  start();
+  const std::int64_t arrival_ns = push_sweep(kEndNs);
+  TimedObstacleList* timed = next_list();
+  ASSERT_NE(timed, nullptr);
+  EXPECT_EQ(timed->list.stamp_ns, kEndNs);
+  EXPECT_EQ(timed->arrival_ns, arrival_ns);
+  EXPECT_GE(timed->detector_ns, 0);
+  EXPECT_EQ(timed->report.drops.points, 7U);
+  EXPECT_EQ(worker_->not_covered(), 0U);
+}
+
+TEST_F(DetectorWorkerTest, ASweepThatWasNotLookedAtGivesNoList) {
+  has_looked_ = false;
+  start();
+  push_sweep();
+  ASSERT_TRUE(until([&] { return processed_ == 1; }));
+  has_looked_ = true;
+  const std::int64_t second_ns = push_sweep();
+  TimedObstacleList* timed = next_list();
+  ASSERT_NE(timed, nullptr);
+  EXPECT_EQ(timed->arrival_ns, second_ns);
+}
+
+TEST_F(DetectorWorkerTest, ListsThatThePublisherDoesNotTakeAreDroppedAndCounted) {
+  start();
+  for (std::size_t i = 0; i < kLists + 2; ++i) push_sweep();
+  EXPECT_TRUE(until([&] { return worker_->lists_dropped() == 2; }));
+}
+
+TEST_F(DetectorWorkerTest, ASweepWaitsForMotionUntilTheLimit) {
+  SyncBuffer sensors;
+  sensors.put(imu_sample(kSampleNs));
+  start(&sensors, 0.08);
+  const std::int64_t arrival_ns = push_sweep(kEndNs);
+  ASSERT_NE(next_list(), nullptr);
+  EXPECT_GE(processed_ns_ - arrival_ns, 80 * kMillisecond);
+  EXPECT_EQ(worker_->not_covered(), 1U);
+}
+
+TEST_F(DetectorWorkerTest, ASweepGoesOnWithTheSampleThatCoversIt) {
+  SyncBuffer sensors;
+  sensors.put(imu_sample(kSampleNs));
+  start(&sensors, 60);
+  push_sweep(kEndNs);
+  std::this_thread::sleep_for(milliseconds(20));
+  EXPECT_EQ(processed_, 0);
+  sensors.put(imu_sample(kEndNs));
+  ASSERT_NE(next_list(), nullptr);
+  EXPECT_EQ(worker_->not_covered(), 0U);
+}
+
+TEST_F(DetectorWorkerTest, LoopsWithoutSweepsAndEmptiesTheRings) {
+  SyncBuffer sensors;
+  start(&sensors);
+  sensors.put(imu_sample(kSampleNs));
+  EXPECT_TRUE(until([&] { return sensors.imu_fill().waiting == 0; }));
+  const std::uint64_t loops = worker_->loops().count();
+  const std::int64_t loop_ns = worker_->last_loop_ns();
+  EXPECT_TRUE(until([&] { return worker_->loops().count() > loops; }));
+  EXPECT_TRUE(until([&] { return worker_->last_loop_ns() > loop_ns; }));
+}
+
+TEST_F(DetectorWorkerTest, StopsInTheMiddleOfAWait) {
+  SyncBuffer sensors;
+  sensors.put(imu_sample(kSampleNs));
+  start(&sensors, 3600);
+  push_sweep(kEndNs);
+}
+
+}  // namespace
+}  // namespace scree

@@ -1,0 +1,117 @@
+#include "app/publisher_worker.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <thread>
+
+#include "scree/publish/subscriber.hpp"
+#include "scree/sync/clocks.hpp"
+#include "unit/free_port.hpp"
+
+namespace scree {
+namespace {
+
+class PublisherWorkerTest : public testing::Test {
+protected:
+  PublisherWorkerTest() {
+    const std::string url = free_lcm_url();
+    auto subscriber = Subscriber::open(
+        url,
+        [this](const obstacle_list_t& message) {
+          list_ = message;
+          ++lists_received_;
+        },
+        [this](const health_t& message) { health_ = message; });
+    auto publisher = Publisher::open(url, 1);
+    EXPECT_TRUE(subscriber && publisher);
+    subscriber_ = std::move(*subscriber);
+    lines_.heartbeat = [this](bool) {
+      ++heartbeats_;
+      return true;
+    };
+    worker_.emplace(
+        settings_, lines_, std::move(*publisher), lists_, [this] { return get_status(); },
+        watchdog_);
+    thread_ = std::thread([this] { worker_->run(); });
+  }
+  ~PublisherWorkerTest() override { stop(); }
+
+  void stop() {
+    worker_->stop();
+    if (thread_.joinable()) thread_.join();
+  }
+  /// Stands for a lidar and a detector that work.
+  DaemonStatus get_status() {
+    const std::int64_t now_ns = steady_ns();
+    DaemonStatus status;
+    status.lidar.last_datagram_ns = status.lidar.last_packet_ns = status.lidar.last_sweep_ns =
+        now_ns;
+    status.detector_loop_ns = now_ns;
+    status.lists_dropped = 3;
+    status.samples_refused = 4;
+    status.queues = {queue_message("lists", lists_.fill())};
+    return status;
+  }
+  /// Pushes a list of a sweep that arrived some time ago.
+  void push_list(std::int64_t age_ns) {
+    TimedObstacleList* timed = lists_.acquire();
+    ASSERT_NE(timed, nullptr);
+    timed->arrival_ns = timed->list.stamp_ns = steady_ns() - age_ns;
+    lists_.push(timed);
+  }
+  /// Receives until it holds; false after a minute.
+  bool until(const std::function<bool()>& holds) {
+    const std::int64_t end_ns = steady_ns() + 60 * kSecond;
+    while (!holds() && steady_ns() < end_ns) subscriber_->handle(100);
+    return holds();
+  }
+
+  Settings settings_;
+  RobotLines lines_;
+  ObstacleListPool lists_{4, [] { return TimedObstacleList(1); }};
+  ThreadWatchdog watchdog_;
+  std::atomic<int> heartbeats_ = 0;
+  int lists_received_ = 0;
+  obstacle_list_t list_{};
+  health_t health_{};
+  std::unique_ptr<Subscriber> subscriber_;
+  std::optional<PublisherWorker> worker_;
+  std::thread thread_;
+};
+
+TEST_F(PublisherWorkerTest, AListGoesOutInWallClockTimeAndBeats) {
+  push_list(0);
+  ASSERT_TRUE(until([&] { return lists_received_ == 1; }));
+  EXPECT_NEAR(static_cast<double>(wall_ns() - list_.stamp_ns), 0, 60e9);
+  EXPECT_TRUE(until([&] { return heartbeats_ == 1; }));
+  EXPECT_TRUE(until([&] { return health_.state == health_t::OK && health_.lists_published == 1; }));
+}
+
+TEST_F(PublisherWorkerTest, AnOldListGoesOutButIsNoSight) {
+  push_list(HealthWatch::kOldSweep + kSecond);
+  ASSERT_TRUE(until([&] { return lists_received_ == 1 && health_.lists_published == 1; }));
+  EXPECT_EQ(health_.state, health_t::BLIND);
+  EXPECT_EQ(health_.reason, "no sweep has got through the detector yet");
+}
+
+TEST_F(PublisherWorkerTest, HealthHasTheCountsOfTheOtherThreads) {
+  ASSERT_TRUE(until([&] { return health_.queues_size == 1; }));
+  EXPECT_EQ(health_.lists_dropped, 3);
+  EXPECT_EQ(health_.samples_refused, 4);
+  EXPECT_EQ(health_.queues[0].name, "lists");
+}
+
+TEST_F(PublisherWorkerTest, AtItsEndTheRobotIsBlind) {
+  push_list(0);
+  ASSERT_TRUE(until([&] { return health_.state == health_t::OK; }));
+  stop();
+  EXPECT_TRUE(until([&] { return health_.state == health_t::BLIND; }));
+  EXPECT_EQ(worker_->sentence(), "blind: screed was stopped");
+}
+
+}  // namespace
+}  // namespace scree
