@@ -7,7 +7,7 @@
 #include "loop_counter.hpp"
 #include "scree/app/motion_wait.hpp"
 #include "scree/app/sweep_processor.hpp"
-#include "scree/sync/clocks.hpp"
+#include "scree/clock/clocks.hpp"
 #include "timed_obstacle_list.hpp"
 #include "timed_sweep.hpp"
 

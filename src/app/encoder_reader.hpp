@@ -5,10 +5,10 @@
 
 #include "event.hpp"
 #include "loop_counter.hpp"
+#include "scree/clock/host_clock.hpp"
 #include "scree/config/settings.hpp"
 #include "scree/drivers/encoder/can_socket.hpp"
 #include "scree/drivers/encoder/encoder_stream.hpp"
-#include "scree/sync/host_clock.hpp"
 #include "scree/sync/sync_buffer.hpp"
 #include "sensor_status.hpp"
 #include "triple_buffer.hpp"

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <utility>
 
-#include "scree/sync/clocks.hpp"
+#include "scree/clock/clocks.hpp"
 
 namespace scree {
 namespace {

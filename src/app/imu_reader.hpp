@@ -5,10 +5,10 @@
 
 #include "event.hpp"
 #include "loop_counter.hpp"
+#include "scree/clock/host_clock.hpp"
 #include "scree/config/settings.hpp"
 #include "scree/drivers/xsens/device.hpp"
 #include "scree/drivers/xsens/imu_stream.hpp"
-#include "scree/sync/host_clock.hpp"
 #include "scree/sync/sync_buffer.hpp"
 #include "sensor_status.hpp"
 #include "triple_buffer.hpp"

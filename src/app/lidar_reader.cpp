@@ -5,9 +5,9 @@
 #include <iterator>
 #include <utility>
 
+#include "scree/clock/clocks.hpp"
 #include "scree/core/nanoseconds.hpp"
 #include "scree/drivers/velodyne/position_packet.hpp"
-#include "scree/sync/clocks.hpp"
 
 namespace scree {
 namespace {

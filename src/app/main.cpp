@@ -12,9 +12,9 @@
 #include "running_config.hpp"
 #include "scree/app/daemon.hpp"
 #include "scree/app/pipeline.hpp"
+#include "scree/clock/clocks.hpp"
 #include "scree/drivers/gpio/lines.hpp"
 #include "scree/drivers/xsens/start_up.hpp"
-#include "scree/sync/clocks.hpp"
 #include "service_manager.hpp"
 #include "supervisor.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "page_faults.hpp"
 #include "scree/core/nanoseconds.hpp"
-#include "scree/sync/clocks.hpp"
+#include "scree/clock/clocks.hpp"
 
 namespace scree {
 namespace {

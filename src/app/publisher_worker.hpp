@@ -12,7 +12,7 @@
 #include "loop_counter.hpp"
 #include "output_lines.hpp"
 #include "scree/publish/publisher.hpp"
-#include "scree/sync/host_clock.hpp"
+#include "scree/clock/host_clock.hpp"
 #include "thermometer.hpp"
 #include "thread_watchdog.hpp"
 #include "timed_obstacle_list.hpp"

@@ -2,12 +2,12 @@
 
 #include <cstdint>
 
+#include "scree/clock/device_clock.hpp"
 #include "scree/drivers/encoder/can_socket.hpp"
 #include "scree/drivers/encoder/encoder_stream.hpp"
 #include "scree/drivers/velodyne/lidar_stream.hpp"
 #include "scree/drivers/velodyne/udp_receiver.hpp"
 #include "scree/drivers/xsens/imu_stream.hpp"
-#include "scree/sync/device_clock.hpp"
 
 // What the sensors' reader threads have seen since the start. Times are of the steady clock, 0
 // before the first; offsets of clocks are those of the wall clock.

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "log_lines.hpp"
-#include "scree/sync/device_clock.hpp"
+#include "scree/clock/device_clock.hpp"
 
 namespace scree {
 

@@ -11,11 +11,11 @@
 
 #include "scree/capture/can_log.hpp"
 #include "scree/capture/pcap_writer.hpp"
+#include "scree/clock/clocks.hpp"
 #include "scree/config/settings.hpp"
 #include "scree/drivers/encoder/can_socket.hpp"
 #include "scree/drivers/velodyne/udp_receiver.hpp"
 #include "scree/drivers/xsens/device.hpp"
-#include "scree/sync/clocks.hpp"
 
 namespace scree::cli {
 

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "scree/publish/subscriber.hpp"
-#include "scree/sync/clocks.hpp"
+#include "scree/clock/clocks.hpp"
 #include "unit/free_port.hpp"
 
 namespace scree {

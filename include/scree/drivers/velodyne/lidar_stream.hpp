@@ -5,12 +5,12 @@
 #include <functional>
 #include <optional>
 
+#include "scree/clock/device_clock.hpp"
 #include "scree/config/settings.hpp"
 #include "scree/core/sweep.hpp"
 #include "scree/drivers/velodyne/data_packet.hpp"
 #include "scree/drivers/velodyne/firmware.hpp"
 #include "scree/drivers/velodyne/sweep_builder.hpp"
-#include "scree/sync/device_clock.hpp"
 
 namespace scree::velodyne {
 

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "scree/clock/device_clock.hpp"
 #include "scree/drivers/xsens/measurement.hpp"
-#include "scree/sync/device_clock.hpp"
 
 namespace scree::xsens {
 

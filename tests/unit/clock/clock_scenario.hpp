@@ -7,8 +7,8 @@
 #include <functional>
 #include <random>
 
+#include "scree/clock/device_clock.hpp"
 #include "scree/core/nanoseconds.hpp"
-#include "scree/sync/device_clock.hpp"
 
 namespace scree::clock_scenario {
 

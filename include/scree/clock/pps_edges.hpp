@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "scree/sync/clock_line.hpp"
+#include "scree/clock/clock_line.hpp"
 
 namespace scree {
 

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <optional>
 
-#include "scree/sync/clock_line.hpp"
-#include "scree/sync/delay_envelope.hpp"
-#include "scree/sync/pps_edges.hpp"
+#include "scree/clock/clock_line.hpp"
+#include "scree/clock/delay_envelope.hpp"
+#include "scree/clock/pps_edges.hpp"
 
 namespace scree {
 

@@ -1,4 +1,4 @@
-#include "scree/sync/device_clock.hpp"
+#include "scree/clock/device_clock.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "scree/sync/pps_edges.hpp"
+#include "scree/clock/pps_edges.hpp"
 
 #include <algorithm>
 #include <cstdlib>

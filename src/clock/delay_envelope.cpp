@@ -1,4 +1,4 @@
-#include "scree/sync/delay_envelope.hpp"
+#include "scree/clock/delay_envelope.hpp"
 
 #include <algorithm>
 

@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
+#include "scree/clock/host_clock.hpp"
 #include "scree/core/nanoseconds.hpp"
-#include "scree/sync/host_clock.hpp"
 
 namespace scree {
 

@@ -1,4 +1,4 @@
-#include "scree/sync/host_clock.hpp"
+#include "scree/clock/host_clock.hpp"
 
 #include <gtest/gtest.h>
 
