@@ -86,7 +86,7 @@ void Pipeline::detect_in_map() {
   for (Obstacle& obstacle : found_) obstacle.center += map.origin();
   tracker_.update(
       list_.stamp_ns, mapper_->pose().translation, {found_.data(), found_.size()},
-      [&map](const Eigen::Vector3d& place) { return map.sight(place); }, list_.obstacles);
+      [&map](const Eigen::Vector3d& place) { return map.occupancy_at(place); }, list_.obstacles);
   list_.pose = mapper_->to_odom() * mapper_->pose();
   for (Obstacle& obstacle : list_.obstacles) obstacle.center = mapper_->to_odom() * obstacle.center;
   timer_.done(Stage::tracking);
@@ -98,7 +98,7 @@ void Pipeline::detect_in_sweep(const Sweep& sweep) {
   sweep_detector_.detect(sweep_.points, {}, found_, timer_);
   sweep_tracker_.update(
       list_.stamp_ns, Eigen::Vector3d::Zero(), {found_.data(), found_.size()},
-      [](const Eigen::Vector3d&) { return Sight::unseen; }, list_.obstacles);
+      [](const Eigen::Vector3d&) { return Occupancy::unknown; }, list_.obstacles);
   timer_.done(Stage::tracking);
 }
 

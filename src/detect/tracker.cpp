@@ -32,7 +32,7 @@ Tracker::Tracker(const TrackingSettings& settings, std::size_t max_tracks,
 
 void Tracker::update(std::int64_t stamp_ns, const Eigen::Vector3d& robot,
                      std::span<const Obstacle> found,
-                     const std::function<Sight(const Eigen::Vector3d&)>& sight,
+                     const std::function<Occupancy(const Eigen::Vector3d&)>& occupancy_at,
                      FixedVector<Obstacle>& obstacles) {
   if (found.size() > track_of_.capacity()) {
     dropped_ += found.size() - track_of_.capacity();
@@ -50,13 +50,13 @@ void Tracker::update(std::int64_t stamp_ns, const Eigen::Vector3d& robot,
   std::size_t kept = 0;
   for (Track& track : tracks_) {
     if (!track.is_matched) {
-      const Sight seen = sight(track.obstacle.center);
+      const Occupancy seen = occupancy_at(track.obstacle.center);
       // The middle of a hole is empty as long as it is there.
-      track.is_seen_empty = seen == Sight::empty && track.obstacle.height > 0;
+      track.is_seen_empty = seen == Occupancy::free && track.obstacle.height > 0;
       learn(track, nullptr,
-            track.is_seen_empty     ? std::min(2 * share, 1.0F)
-            : seen == Sight::unseen ? 0
-                                    : share);
+            track.is_seen_empty          ? std::min(2 * share, 1.0F)
+            : seen == Occupancy::unknown ? 0
+                                         : share);
       // From the future, too, when the clock was set back.
       if (std::abs(stamp_ns - track.found_ns) >= remembered_ns) continue;
     }

@@ -215,18 +215,18 @@ void RollingMap::follow(const Eigen::Vector3f& from, const Eigen::Vector3f& beam
   }
 }
 
-Sight RollingMap::sight(const Eigen::Vector3d& place) const {
-  const Key key = key_of((place - origin_).cast<float>());
+Occupancy RollingMap::occupancy_at(const Eigen::Vector3d& point) const {
+  const Key key = key_of((point - origin_).cast<float>());
   for (int x = -1; x <= 1; ++x) {
     for (int y = -1; y <= 1; ++y) {
       for (int z = -1; z <= 1; ++z) {
-        if (find(key.beside(x, y, z)) != nullptr) return Sight::occupied;
+        if (find(key.beside(x, y, z)) != nullptr) return Occupancy::occupied;
       }
     }
   }
   constexpr std::uint32_t kRecent = 20;  // sweeps
-  const std::uint32_t passed = free_space_.last_passed(place.cast<float>());
-  return passed != 0 && sweep_ - passed < kRecent ? Sight::empty : Sight::unseen;
+  const std::uint32_t passed = free_space_.last_passed(point.cast<float>());
+  return passed != 0 && sweep_ - passed < kRecent ? Occupancy::free : Occupancy::unknown;
 }
 
 /// How many beams came to a thing must not tell how long the robot has been near it.

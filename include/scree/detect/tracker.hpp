@@ -10,7 +10,7 @@
 #include "scree/config/settings.hpp"
 #include "scree/core/fixed_vector.hpp"
 #include "scree/core/obstacle.hpp"
-#include "scree/core/sight.hpp"
+#include "scree/core/occupancy.hpp"
 #include "scree/detect/network.hpp"
 #include "scree/detect/pieces.hpp"
 
@@ -54,10 +54,10 @@ public:
 
   /// @param robot where it is, in the map's frame
   /// @param found every candidate of this list with its confidence, also low ones, in that frame
-  /// @param sight of a place in it
+  /// @param occupancy_at what is known of a point in that frame
   /// @param obstacles those to publish; their ids are the tracks'
   void update(std::int64_t stamp_ns, const Eigen::Vector3d& robot, std::span<const Obstacle> found,
-              const std::function<Sight(const Eigen::Vector3d&)>& sight,
+              const std::function<Occupancy(const Eigen::Vector3d&)>& occupancy_at,
               FixedVector<Obstacle>& obstacles);
   void set(const TrackingSettings& settings) { settings_ = settings; }
   void clear() { tracks_.clear(); }

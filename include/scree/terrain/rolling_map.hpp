@@ -9,9 +9,9 @@
 #include "scree/config/settings.hpp"
 #include "scree/core/beam_count.hpp"
 #include "scree/core/fixed_vector.hpp"
+#include "scree/core/occupancy.hpp"
 #include "scree/core/point_cloud.hpp"
 #include "scree/core/pose.hpp"
-#include "scree/core/sight.hpp"
 #include "scree/motion/deskew.hpp"
 #include "scree/terrain/endless_box.hpp"
 #include "scree/terrain/free_space.hpp"
@@ -42,7 +42,7 @@ public:
   const Eigen::Vector3d& origin() const { return origin_; }
   /// Of a place in the map's frame, to the accuracy of the coarse cells in which free space is
   /// kept.
-  Sight sight(const Eigen::Vector3d& place) const;
+  Occupancy occupancy_at(const Eigen::Vector3d& point) const;
 
   std::size_t voxels() const { return voxels_.size(); }
   std::uint64_t dropped() const { return dropped_; }

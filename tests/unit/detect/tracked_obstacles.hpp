@@ -17,7 +17,7 @@ protected:
   TrackingSettings settings_{.reach = 100};
   Tracker tracker_{settings_, kMost};
   FixedVector<Obstacle> list_{kMost};
-  Sight sight_ = Sight::occupied;
+  Occupancy occupancy_ = Occupancy::occupied;
   Eigen::Vector3d robot_ = Eigen::Vector3d::Zero();
   std::int64_t now_ns_ = kStart;
 
@@ -43,7 +43,7 @@ protected:
   const FixedVector<Obstacle>& update(const std::vector<Obstacle>& found, int times = 1) {
     for (int i = 0; i < times; ++i) {
       tracker_.update(
-          now_ns_ += kList, robot_, found, [this](const Eigen::Vector3d&) { return sight_; },
+          now_ns_ += kList, robot_, found, [this](const Eigen::Vector3d&) { return occupancy_; },
           list_);
     }
     return list_;

@@ -51,7 +51,7 @@ TEST_F(TrackerJudgeTest, WhatTheDetectorNoLongerFindsGoesWhateverTheJudgeSays) {
   high.height = 1;
   update({high}, 10);
   ASSERT_EQ(list_.size(), 1U);
-  sight_ = Sight::empty;
+  occupancy_ = Occupancy::free;
   EXPECT_LE(updates_until(0, {}), 4);
 }
 

@@ -62,25 +62,27 @@ TEST_F(TrackerTest, IdsStayWithTheirObstaclesWhateverTheOrder) {
 
 TEST_F(TrackerTest, GoesSoonWhereItsPlaceIsSeenEmptyAndLaterWhereItIsUnseen) {
   std::array<int, 3> lists{};
-  for (const Sight sight : {Sight::empty, Sight::occupied, Sight::unseen}) {
+  for (const Occupancy occupancy : {Occupancy::free, Occupancy::occupied, Occupancy::unknown}) {
     tracker_.clear();
     update({at(3, 1)}, 10);
-    sight_ = sight;
-    lists[static_cast<std::size_t>(sight)] = updates_until(0, {});
+    occupancy_ = occupancy;
+    lists[static_cast<std::size_t>(occupancy)] = updates_until(0, {});
   }
-  const auto after = [&](Sight sight) { return lists[static_cast<std::size_t>(sight)]; };
-  EXPECT_LE(after(Sight::empty), 2);
-  EXPECT_GE(after(Sight::occupied), after(Sight::empty));
-  EXPECT_LE(after(Sight::occupied), 5);
+  const auto after = [&](Occupancy occupancy) {
+    return lists[static_cast<std::size_t>(occupancy)];
+  };
+  EXPECT_LE(after(Occupancy::free), 2);
+  EXPECT_GE(after(Occupancy::occupied), after(Occupancy::free));
+  EXPECT_LE(after(Occupancy::occupied), 5);
   const int remembered = static_cast<int>(settings_.remember * 1e9 / kList);
-  EXPECT_GE(after(Sight::unseen), remembered);
-  EXPECT_LE(after(Sight::unseen), remembered + 2);
+  EXPECT_GE(after(Occupancy::unknown), remembered);
+  EXPECT_LE(after(Occupancy::unknown), remembered + 2);
 }
 
 TEST_F(TrackerTest, ComesBackWithItsIdWhenItWasOnlyUnseenForAWhile) {
   update({at(3, 1)}, 5);
   const std::int64_t id = list_[0].id;
-  sight_ = Sight::unseen;
+  occupancy_ = Occupancy::unknown;
   update({}, 5);
   ASSERT_EQ(list_.size(), 1U) << "still there";
   EXPECT_EQ(list_[0].id, id);
@@ -104,13 +106,13 @@ TEST_F(TrackerTest, OfTwoTracksOnOneThingTheOneThatHadItLastKeepsIt) {
 
 TEST_F(TrackerTest, TheMiddleOfAHoleIsEmptyAsLongAsItIsThere) {
   update({hole_at(3, 1)}, 10);
-  sight_ = Sight::empty;
+  occupancy_ = Occupancy::free;
   EXPECT_GT(updates_until(0, {}), 2);
 }
 
 // A confidence that wavers about a threshold does not make the obstacle come and go.
 TEST_F(TrackerTest, OneListOfDoubtWithdrawsNothing) {
-  sight_ = Sight::occupied;
+  occupancy_ = Occupancy::occupied;
   ASSERT_EQ(update({at(3, 1)}, 20).size(), 1U);
   const std::int64_t id = list_[0].id;
   for (int i = 0; i < 2; ++i) {
@@ -238,7 +240,7 @@ TEST_F(TrackerTest, DropsAndCountsWhatFindsNoRoom) {
   many.resize(5);
   for (int i = 0; i < 3; ++i) {
     tracker_.update(
-        now_ns_ += kList, robot_, many, [](const Eigen::Vector3d&) { return Sight::occupied; },
+        now_ns_ += kList, robot_, many, [](const Eigen::Vector3d&) { return Occupancy::occupied; },
         small);
   }
   EXPECT_EQ(small.size(), 2U);
@@ -276,7 +278,7 @@ TEST_F(TrackerTest, AnObstacleOfWhichAPartIsNearEnoughIsPublished) {
 // Also when the stamps of two lists are the same.
 TEST_F(TrackerTest, OfSweepsWhatIsFoundIsPublishedAtOnceAndGoneWithTheNextList) {
   tracker_ = Tracker(TrackingSettings::for_sweep(), kMost);
-  sight_ = Sight::unseen;
+  occupancy_ = Occupancy::unknown;
   const auto list_of = [&](const std::vector<Obstacle>& found) {
     now_ns_ = kStart;
     update(found);
@@ -300,7 +302,7 @@ TEST_F(TrackerTest, GoesOnWhenTheClockIsSet) {
     update({at(3, 1), at(9, 1)}, 5);
     const std::int64_t id = list_[0].id;
     now_ns_ += shift;
-    sight_ = Sight::unseen;
+    occupancy_ = Occupancy::unknown;
     update({at(3, 1)}, 20);
     ASSERT_EQ(list_.size(), 1U);
     EXPECT_EQ(list_[0].id, id);

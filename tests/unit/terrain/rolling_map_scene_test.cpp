@@ -89,7 +89,7 @@ TEST(RollingMapScene, WhatMovedAwayIsForgottenAndWhatStandsStays) {
   const Scene::Counts with = scene.counts();
   EXPECT_GT(with.box, 150);
   EXPECT_GT(with.ground, 3000);
-  EXPECT_EQ(scene.map().sight({3, 0, 0.3}), Sight::occupied);
+  EXPECT_EQ(scene.map().occupancy_at({3, 0, 0.3}), Occupancy::occupied);
 
   scene.look(150);
   const Scene::Counts later = scene.counts();
@@ -101,7 +101,7 @@ TEST(RollingMapScene, WhatMovedAwayIsForgottenAndWhatStandsStays) {
   const Scene::Counts without = scene.counts();
   EXPECT_LT(without.box, 0.05 * with.box);
   EXPECT_GT(without.ground, with.ground) << "also where the box stood, and behind it";
-  EXPECT_EQ(scene.map().sight({3, 0, 0.3}), Sight::empty);
+  EXPECT_EQ(scene.map().occupancy_at({3, 0, 0.3}), Occupancy::free);
 }
 
 // The beams that show that it is gone end far behind where it stood.
@@ -145,14 +145,14 @@ TEST(RollingMapScene, ALowBoxLetsNothingPass) {
 TEST(RollingMapScene, TellsUnseenFromEmpty) {
   Scene scene;
   scene.look(20);
-  EXPECT_EQ(scene.map().sight({3, 0, 0.25}), Sight::occupied);
-  EXPECT_EQ(scene.map().sight({2, 0, 0}), Sight::occupied) << "the ground";
-  EXPECT_EQ(scene.map().sight({1.5, 0, 0.6}), Sight::empty);
-  EXPECT_EQ(scene.map().sight({4.3, 0, 0.15}), Sight::unseen) << "in the box's shadow";
-  EXPECT_EQ(scene.map().sight({3, 0, 2}), Sight::unseen) << "above all beams";
-  EXPECT_EQ(scene.map().sight({-3, 0, 0.5}), Sight::unseen) << "behind";
-  EXPECT_EQ(scene.map().sight({2, 0, -0.6}), Sight::unseen) << "below ground";
-  EXPECT_EQ(scene.map().sight({300, 0, 0}), Sight::unseen);
+  EXPECT_EQ(scene.map().occupancy_at({3, 0, 0.25}), Occupancy::occupied);
+  EXPECT_EQ(scene.map().occupancy_at({2, 0, 0}), Occupancy::occupied) << "the ground";
+  EXPECT_EQ(scene.map().occupancy_at({1.5, 0, 0.6}), Occupancy::free);
+  EXPECT_EQ(scene.map().occupancy_at({4.3, 0, 0.15}), Occupancy::unknown) << "in the box's shadow";
+  EXPECT_EQ(scene.map().occupancy_at({3, 0, 2}), Occupancy::unknown) << "above all beams";
+  EXPECT_EQ(scene.map().occupancy_at({-3, 0, 0.5}), Occupancy::unknown) << "behind";
+  EXPECT_EQ(scene.map().occupancy_at({2, 0, -0.6}), Occupancy::unknown) << "below ground";
+  EXPECT_EQ(scene.map().occupancy_at({300, 0, 0}), Occupancy::unknown);
 }
 
 TEST(RollingMapScene, IsTheSameOnEveryRun) {

@@ -224,16 +224,17 @@ TEST_F(RollingMapTest, FollowsTheRobotOverKilometres) {
         const Eigen::Vector3d rounded = point.array().round();
         ASSERT_LT((point - rounded).norm(), 2e-3) << sweep;
       }
-      EXPECT_EQ(map_.sight(middle + Eigen::Vector3d(0.02, -0.03, 0.024)), Sight::occupied);
+      EXPECT_EQ(map_.occupancy_at(middle + Eigen::Vector3d(0.02, -0.03, 0.024)),
+                Occupancy::occupied);
       // Halfway between the lidar and each point; only some of the beams are followed.
       const Eigen::Vector3d lidar = pose_.translation + Eigen::Vector3d::UnitZ();
       int empty = 0;
       for (int k = 0; k < 121; ++k) {
         const Eigen::Vector3d point = middle + Eigen::Vector3d(k % 11 - 5, k / 11 - 5, 0);
-        empty += map_.sight(0.5 * (lidar + point)) == Sight::empty ? 1 : 0;
+        empty += map_.occupancy_at(0.5 * (lidar + point)) == Occupancy::free ? 1 : 0;
       }
       EXPECT_GT(empty, 10) << sweep;
-      EXPECT_EQ(map_.sight(middle - Eigen::Vector3d(0, 0, 1.5)), Sight::unseen);
+      EXPECT_EQ(map_.occupancy_at(middle - Eigen::Vector3d(0, 0, 1.5)), Occupancy::unknown);
     }
   }
 }
@@ -247,7 +248,7 @@ TEST_F(RollingMapTest, TakesEmptySweepsAndPointsAtTheLidarItself) {
   map_.clear();
   EXPECT_EQ(map_.voxels(), 0U);
   EXPECT_EQ(map_.cloud().size(), 0U);
-  EXPECT_EQ(map_.sight({0, 0, 1}), Sight::unseen);
+  EXPECT_EQ(map_.occupancy_at({0, 0, 1}), Occupancy::unknown);
 }
 
 TEST_F(RollingMapTest, AllocatesNothing) {
@@ -274,7 +275,7 @@ TEST_F(RollingMapTest, WhatBeamsIntoTheSkyPassIsForgotten) {
     end_sweep();
   }
   EXPECT_FALSE(has_near(gone));
-  EXPECT_EQ(map_.sight(gone), Sight::empty);
+  EXPECT_EQ(map_.occupancy_at(gone), Occupancy::free);
   EXPECT_TRUE(has_near(low)) << "a beam lost on its way down may have met dark ground";
 }
 
