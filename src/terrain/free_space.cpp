@@ -3,49 +3,50 @@
 namespace scree {
 namespace {
 
-constexpr float kInverse = 1 / FreeSpace::kCell;
+constexpr float kInverseCell = 1 / FreeSpace::kCell;
 
-/// Beams after which both counts are halved: what comes to a place that was long free shows soon.
-constexpr int kMostBeams = 2048;
+/// Both counts are halved after this many beams, so that what comes to a cell that was long free
+/// shows soon.
+constexpr int kMaxBeams = 2048;
 
 }  // namespace
 
-FreeSpace::Cell& FreeSpace::cell_for(const Eigen::Vector3f& place) {
-  const Box::Place there = Box::place(place, kInverse);
-  Cell& cell = cells_[there.index()];
-  if (cell.place != there) cell = {.place = there};
-  if (cell.ended + cell.passed >= kMostBeams) {
-    cell.ended /= 2;
-    cell.passed /= 2;
+FreeSpace::Cell& FreeSpace::cell_for(const Eigen::Vector3f& point) {
+  const Grid::CellIndex index = Grid::index_of(point, kInverseCell);
+  Cell& cell = cells_[index.slot()];
+  if (cell.index != index) cell = {.index = index};
+  if (cell.hits + cell.misses >= kMaxBeams) {
+    cell.hits /= 2;
+    cell.misses /= 2;
   }
   return cell;
 }
 
-void FreeSpace::pass(const Eigen::Vector3f& place, std::uint32_t sweep, std::uint16_t beams) {
-  Cell& cell = cell_for(place);
-  cell.sweep = sweep;
-  cell.passed += beams;
+void FreeSpace::add_misses(const Eigen::Vector3f& point, std::uint32_t sweep, std::uint16_t beams) {
+  Cell& cell = cell_for(point);
+  cell.last_miss = sweep;
+  cell.misses += beams;
 }
 
-void FreeSpace::end(const Eigen::Vector3f& place) {
-  ++cell_for(place).ended;
+void FreeSpace::add_hit(const Eigen::Vector3f& point) {
+  ++cell_for(point).hits;
 }
 
-const FreeSpace::Cell* FreeSpace::find(const Eigen::Vector3f& place) const {
-  const Box::Place there = Box::place(place, kInverse);
-  const Cell& cell = cells_[there.index()];
-  return cell.place == there && cell.ended + cell.passed > 0 ? &cell : nullptr;
+const FreeSpace::Cell* FreeSpace::find(const Eigen::Vector3f& point) const {
+  const Grid::CellIndex index = Grid::index_of(point, kInverseCell);
+  const Cell& cell = cells_[index.slot()];
+  return cell.index == index && cell.hits + cell.misses > 0 ? &cell : nullptr;
 }
 
-std::uint32_t FreeSpace::last_passed(const Eigen::Vector3f& place) const {
-  const Cell* const cell = find(place);
-  return cell == nullptr ? 0 : cell->sweep;
+std::uint32_t FreeSpace::last_miss(const Eigen::Vector3f& point) const {
+  const Cell* const cell = find(point);
+  return cell == nullptr ? 0 : cell->last_miss;
 }
 
-float FreeSpace::ended_share(const Eigen::Vector3f& place) const {
-  const Cell* const cell = find(place);
+float FreeSpace::hit_ratio(const Eigen::Vector3f& point) const {
+  const Cell* const cell = find(point);
   if (cell == nullptr) return 1;
-  return static_cast<float>(cell->ended) / static_cast<float>(cell->ended + cell->passed);
+  return static_cast<float>(cell->hits) / static_cast<float>(cell->hits + cell->misses);
 }
 
 }  // namespace scree

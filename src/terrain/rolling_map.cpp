@@ -24,7 +24,7 @@ RollingMap::RollingMap(const MapSettings& settings, std::size_t max_voxels)
       voxels_(max_voxels),
       index_(std::bit_ceil(2 * voxels_.capacity())),
       mask_(index_.capacity() - 1),
-      in_block_(Blocks::kCells),
+      in_block_(BlockGrid::kSlots),
       cloud_(voxels_.capacity()),
       beams_(voxels_.capacity()) {
   clear();
@@ -146,7 +146,7 @@ void RollingMap::add(const DeskewedSweep& sweep, const Pose& pose, std::int64_t 
       ++dropped_;
       continue;
     }
-    if (seen.squaredNorm() <= search_reach * search_reach) free_space_.end(point + shift);
+    if (seen.squaredNorm() <= search_reach * search_reach) free_space_.add_hit(point + shift);
     if (voxel->hits < kMost) {
       ++voxel->hits;
       voxel->grains += sweep.is_grain[i];
@@ -196,7 +196,7 @@ void RollingMap::follow(const Eigen::Vector3f& from, const Eigen::Vector3f& beam
   const float end = std::min(range - std::max(kClear, kClearShare * range), reach);
   const Eigen::Vector3f along = beam / range;
   for (float way = 0; way < std::min(end, search_reach); way += FreeSpace::kCell) {
-    free_space_.pass(from + way * along + shift, sweep_, kEvery);
+    free_space_.add_misses(from + way * along + shift, sweep_, kEvery);
   }
   std::uint32_t last = 0;
   const float grass_end = std::min(range - kFartherOn, reach);
@@ -225,7 +225,7 @@ Occupancy RollingMap::occupancy_at(const Eigen::Vector3d& point) const {
     }
   }
   constexpr std::uint32_t kRecent = 20;  // sweeps
-  const std::uint32_t passed = free_space_.last_passed(point.cast<float>());
+  const std::uint32_t passed = free_space_.last_miss(point.cast<float>());
   return passed != 0 && sweep_ - passed < kRecent ? Occupancy::free : Occupancy::unknown;
 }
 
@@ -298,10 +298,10 @@ bool RollingMap::is_dust(const Voxel& voxel) const {
   constexpr float kSolid = 0.1F;  // share of the beams that end in a coarse cell
   if (voxel.hits >= kMany) return false;
   const Eigen::Vector3f place = voxel.mean + origin_.cast<float>();
-  if (free_space_.ended_share(place) >= kSolid) return false;
+  if (free_space_.hit_ratio(place) >= kSolid) return false;
   for (const float side : {-FreeSpace::kCell, FreeSpace::kCell}) {
     for (int axis = 0; axis < 3; ++axis) {
-      const float share = free_space_.ended_share(place + side * Eigen::Vector3f::Unit(axis));
+      const float share = free_space_.hit_ratio(place + side * Eigen::Vector3f::Unit(axis));
       if (share >= kSolid && share < 1) return false;  // a grain may be all that came to a cell
     }
   }

@@ -19,7 +19,7 @@ constexpr float kLeastWidth = 0.12F;  // of the cell's edge
 
 }  // namespace
 
-SurfelMap::SurfelMap(float cell) : cell_(cell), inverse_(1 / cell), cells_(Box::kCells) {
+SurfelMap::SurfelMap(float cell) : cell_(cell), inverse_(1 / cell), cells_(Grid::kSlots) {
   cells_.resize(cells_.capacity());
 }
 
@@ -28,18 +28,18 @@ void SurfelMap::clear() {
 }
 
 Eigen::Vector3f SurfelMap::middle(const Cell& cell) const {
-  return Eigen::Vector3f(static_cast<float>(cell.place.x) + 0.5F,
-                         static_cast<float>(cell.place.y) + 0.5F,
-                         static_cast<float>(cell.place.z) + 0.5F) *
+  return Eigen::Vector3f(static_cast<float>(cell.index.x) + 0.5F,
+                         static_cast<float>(cell.index.y) + 0.5F,
+                         static_cast<float>(cell.index.z) + 0.5F) *
          cell_;
 }
 
 void SurfelMap::add(const Eigen::Vector3f& point) {
-  const Box::Place place = Box::place(point, inverse_);
-  Cell& cell = cells_[place.index()];
-  if (!cell.is_used || cell.place != place) {
+  const Grid::CellIndex index = Grid::index_of(point, inverse_);
+  Cell& cell = cells_[index.slot()];
+  if (!cell.is_used || cell.index != index) {
     cell = Cell();
-    cell.place = place;
+    cell.index = index;
     cell.is_used = true;
   }
   if (cell.is_plane && cell.points >= kStanding && ++cell.left_out % kOneIn != 0) return;
@@ -64,9 +64,9 @@ void SurfelMap::add(const Eigen::Vector3f& point) {
 }
 
 const Surfel* SurfelMap::at(const Eigen::Vector3f& point) {
-  const Box::Place place = Box::place(point, inverse_);
-  Cell& cell = cells_[place.index()];
-  if (!cell.is_used || cell.place != place) return nullptr;
+  const Grid::CellIndex index = Grid::index_of(point, inverse_);
+  Cell& cell = cells_[index.slot()];
+  if (!cell.is_used || cell.index != index) return nullptr;
   if (!cell.is_fresh) fit(cell);
   return cell.is_plane ? &cell.surfel : nullptr;
 }

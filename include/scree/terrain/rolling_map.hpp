@@ -13,8 +13,8 @@
 #include "scree/core/point_cloud.hpp"
 #include "scree/core/pose.hpp"
 #include "scree/motion/deskew.hpp"
-#include "scree/terrain/endless_box.hpp"
 #include "scree/terrain/free_space.hpp"
+#include "scree/terrain/toroidal_grid.hpp"
 
 namespace scree {
 
@@ -73,12 +73,12 @@ private:
   };
 
   /// Cubes of 4 x 4 x 4 voxels; those far from one another share one.
-  using Blocks = EndlessBox<128, 32>;
+  using BlockGrid = ToroidalGrid<128, 32>;
 
   Key key_of(const Eigen::Vector3f& point) const;
   /// Voxels in the block that holds a place.
   std::uint32_t& voxels_around(const Key& key) {
-    return in_block_[Blocks::Place{key.x >> 2, key.y >> 2, key.z >> 2}.index()];
+    return in_block_[BlockGrid::CellIndex{key.x >> 2, key.y >> 2, key.z >> 2}.slot()];
   }
   /// Where in the index a voxel stands, or the free place where it would.
   std::size_t slot_of(const Key& key) const;

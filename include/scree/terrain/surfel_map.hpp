@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "scree/core/fixed_vector.hpp"
-#include "scree/terrain/endless_box.hpp"
+#include "scree/terrain/toroidal_grid.hpp"
 
 namespace scree {
 
@@ -19,7 +19,7 @@ struct Surfel {
 };
 
 /// The ground around the robot as planes in cubic cells, for registration. Bounded: cells lie in an
-/// EndlessBox, and a cell is taken over by the place that was seen last. So what the robot leaves
+/// ToroidalGrid, and a cell is taken over by the place that was seen last. So what the robot leaves
 /// behind is forgotten. Planes of many points hardly move any more: sweeps are laid onto the ground
 /// as it was first seen. Points are floats in the map's frame: good to 1 mm as far as 8 km from its
 /// origin, to 1 cm as far as 80 km.
@@ -37,10 +37,10 @@ public:
 
 private:
   // 38 m x 38 m x 19 m at cells of 0.3 m.
-  using Box = EndlessBox<128, 64>;
+  using Grid = ToroidalGrid<128, 64>;
 
   struct Cell {
-    Box::Place place;
+    Grid::CellIndex index;
     bool is_used = false;
     bool is_fresh = false;  // the surfel is that of the sums
     bool is_plane = false;

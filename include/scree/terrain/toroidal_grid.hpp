@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+
+#include "scree/core/floor_to_cell.hpp"
+
+namespace scree {
+
+/// A grid of cubic cells whose storage wraps around in all three directions. Cells that lie a
+/// multiple of the grid's size apart share a slot of memory; the user keeps the CellIndex there and
+/// so tells which one the slot holds.
+template <int kWidth, int kHeight>
+struct ToroidalGrid {
+  static_assert((kWidth & (kWidth - 1)) == 0 && (kHeight & (kHeight - 1)) == 0, "powers of two");
+  static constexpr std::size_t kSlots = std::size_t{kWidth} * kWidth * kHeight;
+
+  /// A cell's number along each axis, unbounded.
+  struct CellIndex {
+    std::int32_t x = 0, y = 0, z = 0;
+    bool operator==(const CellIndex&) const = default;
+
+    /// Where its memory lies, below kSlots.
+    std::size_t slot() const {
+      return (wrapped(z, kHeight) * kWidth + wrapped(y, kWidth)) * kWidth + wrapped(x, kWidth);
+    }
+  };
+
+  /// @param inverse_size cells a metre
+  static CellIndex index_of(const Eigen::Vector3f& point, float inverse_size) {
+    return {floor_to_cell(point.x() * inverse_size), floor_to_cell(point.y() * inverse_size),
+            floor_to_cell(point.z() * inverse_size)};
+  }
+
+private:
+  static std::size_t wrapped(std::int32_t value, int size) {
+    return static_cast<std::size_t>(value & (size - 1));
+  }
+};
+
+}  // namespace scree
