@@ -52,7 +52,7 @@ void deskew(const Sweep& sweep, const LidarSettings& lidar, const MotionTrack& t
       continue;
     }
     out.origins.push_back(place.translation);
-    scatter.add(sweep.laser[i], seen, out.scatter, out.is_grain);
+    scatter.add(sweep.laser[i], seen, out.scatter, out.is_isolated);
   }
   for (const EmptyShot& shot : sweep.empty) {
     const MotionTrack::Place& place = places.at(shot.time_ns);

@@ -6,12 +6,12 @@
 namespace scree {
 
 void RangeScatter::add(std::uint8_t laser, const Eigen::Vector3f& seen, FixedVector<float>& scatter,
-                       FixedVector<std::uint8_t>& is_grain) {
+                       FixedVector<std::uint8_t>& is_isolated) {
   // The sensor turns 0.1 to 0.4 degrees from shot to shot; two returns of one shot are no
   // neighbours.
   constexpr float kLeastStep = 0.0008F, kMostStep = 0.011F;  // rad
   constexpr float kBeside = 0.0175F, kAsFar = 0.3F;          // rad, metres
-  if (!scatter.push_back(kMost) || !is_grain.push_back(1)) return;
+  if (!scatter.push_back(kMost) || !is_isolated.push_back(1)) return;
   Latest& latest = lasers_[laser % kLasers];
   Shot shot;
   shot.range = seen.norm();
@@ -20,7 +20,7 @@ void RangeScatter::add(std::uint8_t laser, const Eigen::Vector3f& seen, FixedVec
   for (const Shot& other : latest.shots) {
     const bool is_beside = (other.along - shot.along).squaredNorm() <= kBeside * kBeside;
     if (!is_beside || std::abs(other.range - shot.range) > kAsFar) continue;
-    is_grain[other.index] = is_grain[shot.index] = 0;
+    is_isolated[other.index] = is_isolated[shot.index] = 0;
   }
   const Shot& last = latest.back(1);
   const float step = (shot.along - last.along).norm();

@@ -14,25 +14,25 @@ struct EmptyBeam {
 
 /// A sweep as it would look from where `base` was at its end.
 struct DeskewedSweep {
-  PointCloud points;                     ///< in `base` at the sweep's end
-  FixedVector<Eigen::Vector3f> origins;  ///< the lidar's origin at each point's time, same frame
-  FixedVector<float> scatter;            ///< of each point, see RangeScatter; metres
-  FixedVector<std::uint8_t> is_grain;    ///< whether it ends alone, see RangeScatter
-  FixedVector<EmptyBeam> empty;          ///< same frame
+  PointCloud points;                      ///< in `base` at the sweep's end
+  FixedVector<Eigen::Vector3f> origins;   ///< the lidar's origin at each point's time, same frame
+  FixedVector<float> scatter;             ///< of each point, see RangeScatter; metres
+  FixedVector<std::uint8_t> is_isolated;  ///< whether it ends alone, see RangeScatter
+  FixedVector<EmptyBeam> empty;           ///< same frame
   std::size_t dropped = 0;
 
   explicit DeskewedSweep(std::size_t capacity)
       : points(capacity),
         origins(capacity),
         scatter(capacity),
-        is_grain(capacity),
+        is_isolated(capacity),
         empty(capacity) {}
 
   void clear() {
     points.clear();
     origins.clear();
     scatter.clear();
-    is_grain.clear();
+    is_isolated.clear();
     empty.clear();
     dropped = 0;
   }

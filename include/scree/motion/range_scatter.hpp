@@ -22,10 +22,10 @@ public:
   /// an edge beside it does not count.
   /// @param seen metres, `lidar` frame
   /// @param scatter of the points so far, metres; gets one more
-  /// @param is_grain of the points so far: 1 where none of the four shots before and after it, up
-  /// to a degree off, ended within 0.3 m of its range, else 0; gets one more
+  /// @param is_isolated of the points so far: 1 where none of the four shots before and after it,
+  /// up to a degree off, ended within 0.3 m of its range, else 0; gets one more
   void add(std::uint8_t laser, const Eigen::Vector3f& seen, FixedVector<float>& scatter,
-           FixedVector<std::uint8_t>& is_grain);
+           FixedVector<std::uint8_t>& is_isolated);
 
 private:
   struct Shot {

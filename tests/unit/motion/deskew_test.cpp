@@ -131,7 +131,7 @@ TEST_F(DeskewTest, LeavesOutWhatIsNearOrFarOrNoNumber) {
   follow();
   EXPECT_EQ(out_.points.size(), 3U);
   EXPECT_EQ(out_.scatter.size(), 3U);
-  EXPECT_EQ(out_.is_grain.size(), 3U);
+  EXPECT_EQ(out_.is_isolated.size(), 3U);
   EXPECT_EQ(out_.origins.size(), 3U);
   EXPECT_EQ(out_.dropped, 0U);
 }
@@ -142,7 +142,7 @@ TEST_F(DeskewTest, CountsWhatDoesNotFitAndTakesAnEmptySweep) {
   follow();
   EXPECT_EQ(out_.points.size(), 100U);
   EXPECT_EQ(out_.scatter.size(), 100U);
-  EXPECT_EQ(out_.is_grain.size(), 100U);
+  EXPECT_EQ(out_.is_isolated.size(), 100U);
   EXPECT_EQ(out_.origins.size(), 100U);
   EXPECT_EQ(out_.dropped, 2900U);
   sweep_.clear();

@@ -26,11 +26,11 @@ Eigen::Vector3f shot(double azimuth, double range, double up = 0) {
 struct Turn {
   RangeScatter range_scatter;
   FixedVector<float> scatter;
-  FixedVector<std::uint8_t> is_grain;
+  FixedVector<std::uint8_t> is_isolated;
 
-  explicit Turn(std::size_t points) : scatter(points), is_grain(points) {}
+  explicit Turn(std::size_t points) : scatter(points), is_isolated(points) {}
   void add(std::uint8_t laser, const Eigen::Vector3f& seen) {
-    range_scatter.add(laser, seen, scatter, is_grain);
+    range_scatter.add(laser, seen, scatter, is_isolated);
   }
 };
 
@@ -48,9 +48,9 @@ std::vector<float> scatter_of(const std::vector<double>& ranges, double step = k
   return {turn.scatter.begin(), turn.scatter.end()};
 }
 
-std::vector<int> grains_of(const std::vector<double>& ranges, double step = kPerShot) {
+std::vector<int> isolated_in(const std::vector<double>& ranges, double step = kPerShot) {
   const Turn turn = turn_of(ranges, step);
-  return {turn.is_grain.begin(), turn.is_grain.end()};
+  return {turn.is_isolated.begin(), turn.is_isolated.end()};
 }
 
 double mean_of(const std::vector<float>& values) {
@@ -121,19 +121,19 @@ TEST(RangeScatter, TakesTheSensorsSpeeds) {
   }
 }
 
-TEST(RangeScatter, AGrainEndsAlone) {
+TEST(RangeScatter, AGrainIsIsolated) {
   using testing::ElementsAre;
-  EXPECT_THAT(grains_of({9, 9, 2, 9, 9}), ElementsAre(0, 0, 1, 0, 0));
-  EXPECT_THAT(grains_of({0, 0, 2, 0, 0}), ElementsAre(1)) << "before the sky";
-  EXPECT_THAT(grains_of({9, 9, 2, 2.1, 9}), ElementsAre(0, 0, 0, 0, 0)) << "a post";
-  EXPECT_THAT(grains_of({9, 2, 9, 9, 9, 2.2, 9}), ElementsAre(0, 0, 0, 0, 0, 0, 0)) << "grass";
-  EXPECT_THAT(grains_of({9, 2, 9, 9, 9, 9, 2, 9}), ElementsAre(0, 1, 0, 0, 0, 0, 1, 0));
-  EXPECT_THAT(grains_of({9, 2, 9, 2.5, 9}), ElementsAre(0, 1, 0, 1, 0));
-  EXPECT_THAT(grains_of({2, 0, 0, 2}, 2 * kPerShot), ElementsAre(1, 1)) << "20 turns a second";
-  EXPECT_THAT(grains_of({2, 0, 2}, 2 * kPerShot), ElementsAre(0, 0));
+  EXPECT_THAT(isolated_in({9, 9, 2, 9, 9}), ElementsAre(0, 0, 1, 0, 0));
+  EXPECT_THAT(isolated_in({0, 0, 2, 0, 0}), ElementsAre(1)) << "before the sky";
+  EXPECT_THAT(isolated_in({9, 9, 2, 2.1, 9}), ElementsAre(0, 0, 0, 0, 0)) << "a post";
+  EXPECT_THAT(isolated_in({9, 2, 9, 9, 9, 2.2, 9}), ElementsAre(0, 0, 0, 0, 0, 0, 0)) << "grass";
+  EXPECT_THAT(isolated_in({9, 2, 9, 9, 9, 9, 2, 9}), ElementsAre(0, 1, 0, 0, 0, 0, 1, 0));
+  EXPECT_THAT(isolated_in({9, 2, 9, 2.5, 9}), ElementsAre(0, 1, 0, 1, 0));
+  EXPECT_THAT(isolated_in({2, 0, 0, 2}, 2 * kPerShot), ElementsAre(1, 1)) << "20 turns a second";
+  EXPECT_THAT(isolated_in({2, 0, 2}, 2 * kPerShot), ElementsAre(0, 0));
 }
 
-TEST(RangeScatter, ThinDustIsMostlyGrainsAndGrassIsNot) {
+TEST(RangeScatter, ThinDustIsMostlyIsolatedAndGrassIsNot) {
   std::mt19937 random(6);
   std::uniform_real_distribution<double> depth(0, 0.5), chance(0, 1);
   const auto share = [&](double stopped) {
@@ -141,12 +141,12 @@ TEST(RangeScatter, ThinDustIsMostlyGrainsAndGrassIsNot) {
     for (double& range : ranges) {
       if (chance(random) < stopped) range = 4 + depth(random);
     }
-    const auto grains = grains_of(ranges);
+    const auto isolated = isolated_in(ranges);
     double near = 0, alone = 0;
     for (std::size_t i = 0; i < ranges.size(); ++i) {
       if (ranges[i] > 5) continue;
       ++near;
-      alone += grains[i];
+      alone += isolated[i];
     }
     return alone / near;
   };
@@ -162,7 +162,7 @@ TEST(RangeScatter, KeepsLasersApart) {
     }
   }
   EXPECT_LT(std::ranges::max(turn.scatter), 1e-4);
-  EXPECT_EQ(std::ranges::max(turn.is_grain), 0);
+  EXPECT_EQ(std::ranges::max(turn.is_isolated), 0);
 }
 
 // With dual returns the second return of a shot follows the first.
@@ -186,7 +186,7 @@ TEST(RangeScatter, TakesAnythingAndNoMoreThanFits) {
     turn.add(static_cast<std::uint8_t>(i), i % 3 == 0 ? odd[i % 4] : shot(kPerShot * i, 5));
   }
   EXPECT_EQ(turn.scatter.size(), 100U);
-  EXPECT_EQ(turn.is_grain.size(), 100U);
+  EXPECT_EQ(turn.is_isolated.size(), 100U);
   for (const float each : turn.scatter) {
     EXPECT_GE(each, 0);
     EXPECT_LE(each, RangeScatter::kMost);

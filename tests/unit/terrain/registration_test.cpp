@@ -153,7 +153,7 @@ TEST_F(RegistrationTest, KeyPointsAreChosenByTheirNormals) {
       sweep_.points.push_back(seen.x(), seen.y(), seen.z(), 20);
       sweep_.origins.push_back(Eigen::Vector3f(0, 0, 1));
       sweep_.scatter.push_back(0);
-      sweep_.is_grain.push_back(0);
+      sweep_.is_isolated.push_back(0);
     }
   }
   registration_.align(sweep_, map_, filter_);
@@ -200,7 +200,7 @@ TEST_F(RegistrationTest, ADitchLeavesTheDirectionAlongIt) {
       sweep_.points.push_back(seen.x(), seen.y(), seen.z(), 20);
       sweep_.origins.push_back(Eigen::Vector3f(0, 0, 1));
       sweep_.scatter.push_back(0);
-      sweep_.is_grain.push_back(0);
+      sweep_.is_isolated.push_back(0);
     }
   }
   registration_.align(sweep_, map_, filter_);

@@ -25,14 +25,14 @@ protected:
   std::int64_t now_ns_ = kStart;
 
   /// @param point in `odom`
-  /// @param is_grain whether no other shot ended near it
-  void see(const Eigen::Vector3d& point, bool is_grain = false) {
+  /// @param is_isolated whether no other shot ended near it
+  void see(const Eigen::Vector3d& point, bool is_isolated = false) {
     const Eigen::Vector3f seen =
         (pose_.rotation.conjugate() * (point - pose_.translation)).cast<float>();
     sweep_.points.push_back(seen.x(), seen.y(), seen.z(), 20);
     sweep_.origins.push_back(Eigen::Vector3f(0, 0, 1));
     sweep_.scatter.push_back(kScatter);
-    sweep_.is_grain.push_back(is_grain ? 1 : 0);
+    sweep_.is_isolated.push_back(is_isolated ? 1 : 0);
   }
   /// A beam from the lidar into the sky, or what else gives no return.
   void see_nothing(const Eigen::Vector3d& along) {

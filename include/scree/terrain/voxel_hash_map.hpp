@@ -1,0 +1,108 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+
+#include "scree/core/beam_count.hpp"
+#include "scree/core/fixed_vector.hpp"
+#include "scree/terrain/toroidal_grid.hpp"
+
+namespace scree {
+
+/// A voxel's number along each axis, counted from the origin of its map.
+/// @note 16 bits: voxels of 0.05 m reach 1638 m from the origin.
+struct VoxelKey {
+  std::int16_t x = 0, y = 0, z = 0;
+  bool operator==(const VoxelKey&) const = default;
+
+  VoxelKey shifted(int dx, int dy, int dz) const {
+    return {static_cast<std::int16_t>(x + dx), static_cast<std::int16_t>(y + dy),
+            static_cast<std::int16_t>(z + dz)};
+  }
+};
+
+/// What the sweeps have seen in one voxel.
+struct MapVoxel {
+  VoxelKey key;
+  std::uint16_t hits = 0;           ///< points, saturating
+  std::uint16_t isolated_hits = 0;  ///< how many of the hits ended alone, see RangeScatter
+  std::uint16_t sweeps = 0;         ///< that hit it, saturating
+  std::uint16_t misses = 0;         ///< beams that went through it since the last hit
+  BeamCount beams;
+  std::uint32_t last_sweep = 0;                    ///< number of the last sweep that hit it
+  std::int64_t seen_ns = 0;                        ///< end of that sweep
+  std::uint32_t slot = 0;                          ///< kept by VoxelHashMap
+  Eigen::Vector3f mean = Eigen::Vector3f::Zero();  ///< of its points, the map's frame - origin
+  float reflectivity = 0;
+  bool is_confirmed = false;  ///< what the last look at its neighbourhood found
+
+  bool is_isolated() const { return isolated_hits == hits; }
+};
+
+/// Voxels by their keys: a hash map of bounded memory with open addressing and linear probing. The
+/// voxels stand one behind the other, so that all of them are visited quickly; erase() changes
+/// their order.
+class VoxelHashMap {
+public:
+  explicit VoxelHashMap(std::size_t capacity);
+
+  void clear();
+  std::size_t size() const { return voxels_.size(); }
+  std::size_t capacity() const { return voxels_.capacity(); }
+  MapVoxel& operator[](std::size_t index) { return voxels_[index]; }
+  MapVoxel* begin() { return voxels_.begin(); }
+  MapVoxel* end() { return voxels_.end(); }
+
+  /// Null where there is none.
+  const MapVoxel* find(const VoxelKey& key) const {
+    const std::uint32_t number = numbers_[slot_of(key)];
+    return number == 0 ? nullptr : &voxels_[number - 1];
+  }
+  MapVoxel* find(const VoxelKey& key) {
+    const std::uint32_t number = numbers_[slot_of(key)];
+    return number == 0 ? nullptr : &voxels_[number - 1];
+  }
+  /// Null when full.
+  MapVoxel* find_or_add(const VoxelKey& key);
+  /// Removes a voxel; the last one takes its index.
+  void erase(std::size_t index);
+  /// Moves all keys.
+  void shift(int dx, int dy, int dz);
+
+  /// Whether the block of 4 x 4 x 4 voxels around a key surely holds none. Most of a beam's way is
+  /// empty, and is passed quickly by this.
+  bool is_block_empty(const VoxelKey& key) const { return in_block_[block_of(key)] == 0; }
+
+private:
+  /// Blocks that lie far apart share a count.
+  using BlockGrid = ToroidalGrid<128, 32>;
+
+  static std::size_t block_of(const VoxelKey& key) {
+    return BlockGrid::CellIndex{key.x >> 2, key.y >> 2, key.z >> 2}.slot();
+  }
+  std::size_t home_slot(const VoxelKey& key) const;
+  /// The slot of a voxel, or the free one where it would stand.
+  std::size_t slot_of(const VoxelKey& key) const {
+    std::size_t slot = home_slot(key);
+    while (numbers_[slot] != 0 && voxels_[numbers_[slot] - 1].key != key) slot = (slot + 1) & mask_;
+    return slot;
+  }
+  void index(std::size_t voxel, std::size_t slot);
+
+  FixedVector<MapVoxel> voxels_;
+  FixedVector<std::uint32_t> numbers_;  // by slot: the voxel's index plus one, 0 is free
+  std::size_t mask_;
+  FixedVector<std::uint32_t> in_block_;  // voxels, by block
+};
+
+inline std::size_t VoxelHashMap::home_slot(const VoxelKey& key) const {
+  constexpr std::uint64_t kGoldenRatio = 0x9E3779B97F4A7C15U;  // Fibonacci hashing: 2^64 / phi
+  const auto wide = [](std::int16_t value) {
+    return std::uint64_t{static_cast<std::uint16_t>(value)};
+  };
+  const std::uint64_t word = wide(key.x) | wide(key.y) << 16U | wide(key.z) << 32U;
+  return static_cast<std::size_t>(word * kGoldenRatio >> 32U) & mask_;
+}
+
+}  // namespace scree

@@ -1,0 +1,59 @@
+#include "scree/terrain/rolling_map.hpp"
+
+// Which voxels of the map are ground or things on it, and which are noise or dust.
+namespace scree {
+
+/// The neighbourhood is looked at every few sweeps only: what was found there stays, mostly.
+bool RollingMap::confirm(MapVoxel& voxel) const {
+  constexpr std::uint32_t kLookEvery = 5;  // sweeps
+  if (!voxel.is_confirmed || (sweep_ - voxel.last_sweep) % kLookEvery == 0) {
+    voxel.is_confirmed = has_confirmation(voxel);
+  }
+  return voxel.is_confirmed;
+}
+
+/// A voxel is confirmed by two sweeps that hit it, or by three that hit it or its neighbours.
+/// Isolated hits need three sweeps in the voxel itself: grains of dust meet by chance.
+bool RollingMap::has_confirmation(const MapVoxel& voxel) const {
+  const auto is_hit_enough = [](const MapVoxel& each) {
+    return each.sweeps > (each.is_isolated() ? 2 : 1);
+  };
+  if (is_hit_enough(voxel)) return true;
+  if (voxel.is_isolated()) return false;
+  std::uint32_t other_sweep = voxel.last_sweep;
+  for (int x = -1; x <= 1; ++x) {
+    for (int y = -1; y <= 1; ++y) {
+      for (int z = -1; z <= 1; ++z) {
+        if (x == 0 && y == 0 && z == 0) continue;
+        const MapVoxel* const near = voxels_.find(voxel.key.shifted(x, y, z));
+        if (near == nullptr) continue;
+        if (is_hit_enough(*near)) return true;
+        if (near->is_isolated()) continue;
+        if (near->last_sweep == voxel.last_sweep || near->last_sweep == other_sweep) continue;
+        if (other_sweep != voxel.last_sweep) return true;
+        other_sweep = near->last_sweep;
+      }
+    }
+  }
+  return false;
+}
+
+/// Few of the beams that come to dust end there, now here, now there, and it touches nothing solid,
+/// as a blade's tip does. A voxel with many hits is no dust, whatever went past it.
+bool RollingMap::is_dust(const MapVoxel& voxel) const {
+  constexpr std::uint16_t kSolidHits = 8;
+  // The densest puffs of simulated drives stop 5 to 8 % of the beams.
+  constexpr float kSolidRatio = 0.1F;
+  if (voxel.hits >= kSolidHits) return false;
+  const Eigen::Vector3f point = voxel.mean + origin_.cast<float>();
+  if (free_space_.hit_ratio(point) >= kSolidRatio) return false;
+  for (const float side : {-FreeSpace::kCell, FreeSpace::kCell}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const float ratio = free_space_.hit_ratio(point + side * Eigen::Vector3f::Unit(axis));
+      if (ratio >= kSolidRatio && ratio < 1) return false;  // 1: a grain may be all that came
+    }
+  }
+  return true;
+}
+
+}  // namespace scree

@@ -1,0 +1,68 @@
+#include "scree/terrain/voxel_hash_map.hpp"
+
+#include <bit>
+
+namespace scree {
+
+VoxelHashMap::VoxelHashMap(std::size_t capacity)
+    : voxels_(capacity),
+      numbers_(std::bit_ceil(2 * capacity)),
+      mask_(numbers_.capacity() - 1),
+      in_block_(BlockGrid::kSlots) {
+  clear();
+}
+
+void VoxelHashMap::clear() {
+  voxels_.clear();
+  numbers_.assign(numbers_.capacity(), 0);
+  in_block_.assign(in_block_.capacity(), 0);
+}
+
+void VoxelHashMap::index(std::size_t voxel, std::size_t slot) {
+  numbers_[slot] = static_cast<std::uint32_t>(voxel + 1);
+  voxels_[voxel].slot = static_cast<std::uint32_t>(slot);
+}
+
+MapVoxel* VoxelHashMap::find_or_add(const VoxelKey& key) {
+  const std::size_t slot = slot_of(key);
+  if (numbers_[slot] != 0) return &voxels_[numbers_[slot] - 1];
+  if (voxels_.full()) return nullptr;
+  MapVoxel voxel;
+  voxel.key = key;
+  voxels_.push_back(voxel);
+  index(voxels_.size() - 1, slot);
+  ++in_block_[block_of(key)];
+  return &voxels_.back();
+}
+
+void VoxelHashMap::erase(std::size_t voxel) {
+  --in_block_[block_of(voxels_[voxel].key)];
+  // What follows in the same run of slots moves up, so that no search ends at the gap.
+  std::size_t gap = voxels_[voxel].slot;
+  for (std::size_t slot = (gap + 1) & mask_; numbers_[slot] != 0; slot = (slot + 1) & mask_) {
+    const std::size_t other = numbers_[slot] - 1;
+    const std::size_t home = home_slot(voxels_[other].key);
+    if (((slot - home) & mask_) < ((slot - gap) & mask_)) continue;
+    index(other, gap);
+    gap = slot;
+  }
+  numbers_[gap] = 0;
+  if (voxel + 1 != voxels_.size()) {
+    voxels_[voxel] = voxels_.back();
+    index(voxel, voxels_[voxel].slot);
+  }
+  voxels_.resize(voxels_.size() - 1);
+}
+
+void VoxelHashMap::shift(int dx, int dy, int dz) {
+  numbers_.assign(numbers_.capacity(), 0);
+  in_block_.assign(in_block_.capacity(), 0);
+  for (std::size_t i = 0; i < voxels_.size(); ++i) {
+    VoxelKey& key = voxels_[i].key;
+    key = key.shifted(dx, dy, dz);
+    index(i, slot_of(key));
+    ++in_block_[block_of(key)];
+  }
+}
+
+}  // namespace scree
