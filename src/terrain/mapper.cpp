@@ -19,8 +19,8 @@ Mapper::Mapper(const Settings& settings)
       registers_(settings.map.registration),
       surfel_reach_(settings.map.registration_reach),
       dead_reckoning_(settings.imu.mount().rotation),
-      slip_watch_(settings.imu.mount().rotation, settings.imu.translation,
-                  settings.encoder.max_speed),
+      slip_detector_(settings.imu.mount().rotation, settings.imu.translation,
+                     settings.encoder.max_speed),
       sweep_(static_cast<std::size_t>(settings.memory.sweep_points)),
       levelling_(settings.imu.translation),
       registration_(static_cast<std::size_t>(settings.memory.sweep_points)),
@@ -31,7 +31,7 @@ void Mapper::add(const Sweep& sweep, const SyncBuffer& sensors, StageTimer& time
   const std::int64_t begin_ns = sweep.end_ns + (sweep.points.empty() ? 0 : sweep.time_ns[0]);
   const Pose before = filter_.pose();
   watch_for_slip(sensors, sweep.end_ns);
-  step_ = dead_reckoning_.advance(sensors, begin_ns, sweep.end_ns, track_, !slip_watch_.slips());
+  step_ = dead_reckoning_.advance(sensors, begin_ns, sweep.end_ns, track_, !slip_detector_.slips());
   const bool has_known_attitude = filter_.has_known_attitude();
   const bool was_silent = has_known_attitude && !filter_.knows_attitude();
   filter_.predict(step_);
@@ -58,10 +58,10 @@ void Mapper::add(const Sweep& sweep, const SyncBuffer& sensors, StageTimer& time
 }
 
 void Mapper::watch_for_slip(const SyncBuffer& sensors, std::int64_t end_ns) {
-  slip_watch_.advance(sensors, dead_reckoning_.end_ns(), end_ns, dead_reckoning_.speed());
-  if (slip_watch_.slips()) ++slips_;
-  if (slip_watch_.slips() || !sensors.wheel_at(end_ns)) {
-    dead_reckoning_.assume_speed(slip_watch_.speed());
+  slip_detector_.advance(sensors, dead_reckoning_.end_ns(), end_ns, dead_reckoning_.speed());
+  if (slip_detector_.slips()) ++slips_;
+  if (slip_detector_.slips() || !sensors.wheel_at(end_ns)) {
+    dead_reckoning_.assume_speed(slip_detector_.speed());
   }
 }
 

@@ -9,7 +9,7 @@
 #include "scree/motion/deskew.hpp"
 #include "scree/motion/levelling.hpp"
 #include "scree/motion/pose_filter.hpp"
-#include "scree/motion/slip_watch.hpp"
+#include "scree/motion/slip_detector.hpp"
 #include "scree/sync/sync_buffer.hpp"
 #include "scree/terrain/registration.hpp"
 #include "scree/terrain/rolling_map.hpp"
@@ -58,7 +58,7 @@ private:
   bool registers_;
   double surfel_reach_;
   DeadReckoning dead_reckoning_;
-  SlipWatch slip_watch_;
+  SlipDetector slip_detector_;
   std::uint64_t slips_ = 0;
   bool has_begun_anew_ = false;
   double askew_ = 0;  // rad: error of the turn within a sweep that was guessed; 0 of one measured

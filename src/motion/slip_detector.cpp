@@ -1,10 +1,10 @@
-#include "scree/motion/slip_watch.hpp"
+#include "scree/motion/slip_detector.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "felt.hpp"
+#include "specific_force.hpp"
 
 namespace scree {
 namespace {
@@ -20,42 +20,43 @@ std::optional<double> wheel_speed(const SyncBuffer& sensors, std::int64_t begin_
 
 }  // namespace
 
-void SlipWatch::advance(const SyncBuffer& sensors, std::int64_t begin_ns, std::int64_t end_ns,
-                        double speed) {
+void SlipDetector::advance(const SyncBuffer& sensors, std::int64_t begin_ns, std::int64_t end_ns,
+                           double speed) {
   constexpr double kLongest = 0.5;  // seconds
   const double seconds = static_cast<double>(end_ns - begin_ns) * 1e-9;
   const bool is_short = seconds > 0 && seconds < kLongest;
-  std::optional<double> faster, wheel;
+  std::optional<double> change, wheel;
   if (is_short) {
-    faster = made_faster(sensors, begin_ns, end_ns, mount_, origin_);
+    change = forward_velocity_change(sensors, begin_ns, end_ns, mount_, origin_);
     wheel = wheel_speed(sensors, begin_ns, end_ns);
   }
   if (!wheel || slips_) speed_ = speed;
-  if (!faster) {
+  if (!change) {
     slips_ = is_known_ = false;
     return;
   }
-  speed_ = std::clamp(speed_ + *faster, -max_speed_, max_speed_);
+  speed_ = std::clamp(speed_ + *change, -max_speed_, max_speed_);
   if (!wheel) {
     slips_ = false;
     return;
   }
-  // The mean is that of the middle.
-  const double wheel_now = *wheel + *faster / 2;
-  if (is_known_) return judge(wheel_now, seconds);
+  // A mean speed is that of the interval's middle.
+  const double wheel_now = *wheel + *change / 2;
+  if (is_known_) return compare(wheel_now, seconds);
   speed_ = wheel_now;
   is_known_ = true;
 }
 
-void SlipWatch::judge(double wheel, double seconds) {
-  constexpr double kApart = 0.4, kApartShare = 0.1;  // m/s apart, and of the speed
-  constexpr double kAgreement = 0.2;                 // m/s apart ...
-  constexpr double kAgreedFor = 0.25;                // ... for so many seconds
-  constexpr double kLongest = 4;   // seconds: what the IMU has summed up is no better then
-  constexpr double kFollow = 0.5;  // seconds: the accelerometer's bias has no time to tell
+void SlipDetector::compare(double wheel, double seconds) {
+  // Chosen on simulated drives whose wheel spins 1 m/s too fast, or whose counter stands.
+  constexpr double kSlip = 0.4, kSlipShare = 0.1;  // m/s apart, and share of the speed
+  constexpr double kAgreement = 0.2;               // m/s apart ...
+  constexpr double kAgreedFor = 0.25;              // ... for so many seconds: it grips again
+  constexpr double kLongest = 4;   // seconds: after that the IMU's integral is no better
+  constexpr double kFollow = 0.5;  // seconds: too short for the accelerometer's bias to add up
   const double apart = wheel - speed_;
   if (!slips_) {
-    slips_ = std::abs(apart) > kApart + kApartShare * std::abs(speed_);
+    slips_ = std::abs(apart) > kSlip + kSlipShare * std::abs(speed_);
     agreed_s_ = slipped_s_ = 0;
   } else {
     slipped_s_ += seconds;

@@ -1,4 +1,4 @@
-#include "scree/motion/slip_watch.hpp"
+#include "scree/motion/slip_detector.hpp"
 
 #include <gtest/gtest.h>
 
@@ -36,11 +36,11 @@ test::SimpleDrive rough_drive() {
   return drive;
 }
 
-class SlipWatchTest : public testing::Test {
+class SlipDetectorTest : public testing::Test {
 protected:
   /// Drives for 10 s; the steps during which the wheel slips, by their number.
   std::vector<int> slips(const Slip& slip, const std::function<void(ImuSample&)>& fault = {}) {
-    SlipWatch watch(drive_.imu_mount, drive_.imu_translation, EncoderSettings().max_speed);
+    SlipDetector detector(drive_.imu_mount, drive_.imu_translation, EncoderSettings().max_speed);
     const auto sensors = std::make_unique<SyncBuffer>();
     std::vector<int> steps;
     farthest_off_ = 0;
@@ -55,12 +55,12 @@ protected:
         if (t < silent_from_ || t >= silent_until_) sensors->put(wheel);
       }
       sensors->gather();
-      watch.advance(*sensors, test::nanoseconds(kInterval * i - 0.01),
-                    test::nanoseconds(kInterval * (i + 1) - 0.01), watch.speed());
+      detector.advance(*sensors, test::nanoseconds(kInterval * i - 0.01),
+                       test::nanoseconds(kInterval * (i + 1) - 0.01), detector.speed());
       const double now = kInterval * (i + 1) - 0.01;
       const double speed = (drive_.distance(now + 1e-3) - drive_.distance(now - 1e-3)) / 2e-3;
-      if (i > 0) farthest_off_ = std::max(farthest_off_, std::abs(watch.speed() - speed));
-      if (watch.slips()) steps.push_back(i);
+      if (i > 0) farthest_off_ = std::max(farthest_off_, std::abs(detector.speed() - speed));
+      if (detector.slips()) steps.push_back(i);
     }
     return steps;
   }
@@ -70,12 +70,12 @@ protected:
   double farthest_off_ = 0;  // of the speed, m/s
 };
 
-TEST_F(SlipWatchTest, ARobotThatChangesItsSpeedOnRoughGroundDoesNotSlip) {
+TEST_F(SlipDetectorTest, ARobotThatChangesItsSpeedOnRoughGroundDoesNotSlip) {
   EXPECT_TRUE(slips(between(0, 0, 0)).empty());
   EXPECT_LT(farthest_off_, 0.1);
 }
 
-TEST_F(SlipWatchTest, AWheelThatSpinsIsNotBelievedUntilItAgrees) {
+TEST_F(SlipDetectorTest, AWheelThatSpinsIsNotBelievedUntilItAgrees) {
   for (const double speed : {1.0, -1.0, 2.5}) {
     const auto steps = slips(between(3, 4, speed));
     ASSERT_FALSE(steps.empty()) << speed;
@@ -87,7 +87,7 @@ TEST_F(SlipWatchTest, AWheelThatSpinsIsNotBelievedUntilItAgrees) {
   }
 }
 
-TEST_F(SlipWatchTest, ACounterThatStandsIsNotBelieved) {
+TEST_F(SlipDetectorTest, ACounterThatStandsIsNotBelieved) {
   // From 1.5 to 3 s.
   const auto steps = slips([&](double t) {
     return drive_.distance(std::min(t, 1.5)) - drive_.distance(std::min(t, 3.0));
@@ -96,25 +96,25 @@ TEST_F(SlipWatchTest, ACounterThatStandsIsNotBelieved) {
   EXPECT_LT(farthest_off_, 0.15);
 }
 
-TEST_F(SlipWatchTest, AWheelThatInsistsIsBelievedInTheEnd) {
+TEST_F(SlipDetectorTest, AWheelThatInsistsIsBelievedInTheEnd) {
   const auto steps = slips(between(2, 99, 1.0));
   ASSERT_FALSE(steps.empty());
   EXPECT_LT(steps.back(), 65) << "the IMU alone does not know for so long";
 }
 
-TEST_F(SlipWatchTest, WithoutAccelerationTheWheelIsBelieved) {
+TEST_F(SlipDetectorTest, WithoutAccelerationTheWheelIsBelieved) {
   EXPECT_TRUE(
       slips(between(3, 4, 1), [](ImuSample& imu) { imu.has_acceleration = false; }).empty());
 }
 
-TEST_F(SlipWatchTest, KnowsTheSpeedWhileTheWheelIsSilent) {
+TEST_F(SlipDetectorTest, KnowsTheSpeedWhileTheWheelIsSilent) {
   silent_from_ = 2;
   silent_until_ = 5;
   EXPECT_TRUE(slips(between(0, 0, 0)).empty());
   EXPECT_LT(farthest_off_, 0.1);
 }
 
-TEST_F(SlipWatchTest, KnowsNoSpeedBeyondTheRobots) {
+TEST_F(SlipDetectorTest, KnowsNoSpeedBeyondTheRobots) {
   silent_from_ = 2;
   slips(between(0, 0, 0), [](ImuSample& imu) { imu.acceleration *= 30; });
   EXPECT_LT(farthest_off_, EncoderSettings().max_speed + 2);
