@@ -5,58 +5,58 @@
 namespace scree {
 namespace {
 
-/// Where the lidar was within a sweep. The lasers of a firing share their time, nearly; a place
-/// serves until the time changes.
-class LidarPlaces {
+/// The lidar's transforms within a sweep. The lasers of a firing share their time, nearly; a
+/// transform serves until the time changes.
+class LidarTrajectory {
 public:
-  LidarPlaces(const Pose& mount, const MotionTrack& track)
+  LidarTrajectory(const Pose& mount, const SweepTrajectory& trajectory)
       : rotation_(mount.rotation.toRotationMatrix().cast<float>()),
         translation_(mount.translation.cast<float>()),
-        track_(track) {}
+        trajectory_(trajectory) {}
 
   /// @param time_ns relative to the sweep's end
-  const MotionTrack::Place& at(std::int32_t time_ns) {
-    if (time_ns == time_ns_) return place_;
+  const SweepTrajectory::Transform& at(std::int32_t time_ns) {
+    if (time_ns == time_ns_) return lidar_;
     time_ns_ = time_ns;
-    const MotionTrack::Place base = track_.at(-std::int64_t{time_ns});
-    place_.rotation = base.rotation * rotation_;
-    place_.translation = base.rotation * translation_ + base.translation;
-    return place_;
+    const SweepTrajectory::Transform base = trajectory_.at(-std::int64_t{time_ns});
+    lidar_.rotation = base.rotation * rotation_;
+    lidar_.translation = base.rotation * translation_ + base.translation;
+    return lidar_;
   }
 
 private:
   Eigen::Matrix3f rotation_;
   Eigen::Vector3f translation_;
-  const MotionTrack& track_;
+  const SweepTrajectory& trajectory_;
   std::int32_t time_ns_ = 1;
-  MotionTrack::Place place_;
+  SweepTrajectory::Transform lidar_;
 };
 
 }  // namespace
 
-void deskew(const Sweep& sweep, const LidarSettings& lidar, const MotionTrack& track,
+void deskew(const Sweep& sweep, const LidarSettings& lidar, const SweepTrajectory& trajectory,
             DeskewedSweep& out) {
   const auto nearest = static_cast<float>(lidar.min_range * lidar.min_range);
   const auto farthest = static_cast<float>(lidar.max_range * lidar.max_range);
   out.clear();
-  LidarPlaces places(lidar.mount(), track);
+  LidarTrajectory lidar_trajectory(lidar.mount(), trajectory);
   RangeScatter scatter;
   for (std::size_t i = 0; i < sweep.points.size(); ++i) {
-    const Eigen::Vector3f seen(sweep.points.x[i], sweep.points.y[i], sweep.points.z[i]);
-    const float square = seen.squaredNorm();
+    const Eigen::Vector3f in_lidar(sweep.points.x[i], sweep.points.y[i], sweep.points.z[i]);
+    const float square = in_lidar.squaredNorm();
     if (!(square >= nearest && square <= farthest)) continue;  // nor what is not a number
-    const MotionTrack::Place& place = places.at(sweep.time_ns[i]);
-    const Eigen::Vector3f point = place.rotation * seen + place.translation;
+    const SweepTrajectory::Transform& to_base = lidar_trajectory.at(sweep.time_ns[i]);
+    const Eigen::Vector3f point = to_base.rotation * in_lidar + to_base.translation;
     if (!out.points.push_back(point.x(), point.y(), point.z(), sweep.points.reflectivity[i])) {
       ++out.dropped;
       continue;
     }
-    out.origins.push_back(place.translation);
-    scatter.add(sweep.laser[i], seen, out.scatter, out.is_isolated);
+    out.origins.push_back(to_base.translation);
+    scatter.add(sweep.laser[i], in_lidar, out.scatter, out.is_isolated);
   }
   for (const EmptyShot& shot : sweep.empty) {
-    const MotionTrack::Place& place = places.at(shot.time_ns);
-    out.empty.push_back({place.translation, place.rotation * shot.end + place.translation});
+    const SweepTrajectory::Transform& to_base = lidar_trajectory.at(shot.time_ns);
+    out.empty.push_back({to_base.translation, to_base.rotation * shot.end + to_base.translation});
   }
 }
 

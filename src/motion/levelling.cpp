@@ -44,7 +44,7 @@ void Levelling::advance(const SyncBuffer& sensors, const MotionStep& step, const
   }
   const Eigen::Quaterniond level = pose.rotation * step.attitude.conjugate();
   const Eigen::Vector3d swung = step.attitude * imu_ - step.begin_attitude * imu_;
-  const Eigen::Vector3d velocity = level * (step.moved + swung) / seconds;
+  const Eigen::Vector3d velocity = level * (step.displacement + swung) / seconds;
   // The mean velocity is that of the step's middle: there one window ends and the next begins.
   const Integrals half{level * *force / 2,
                        pose.rotation.toRotationMatrix().topLeftCorner<2, 2>() * seconds / 2,

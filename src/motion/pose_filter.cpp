@@ -98,7 +98,7 @@ void PoseFilter::predict(const MotionStep& step) {
   if (stands) stand(step);
   const double drifting_s = stands ? 0 : seconds;  // that the yaw goes on by the IMU alone
 
-  const Eigen::Vector3d moved = level_ * step.moved * (1 + scale_);
+  const Eigen::Vector3d moved = level_ * step.displacement * (1 + scale_);
   level_ = exponential({0, 0, drift_ * drifting_s}) * level_;
   const double kept = std::exp(-seconds / kTiltSeconds);
   if (step.knows_attitude) level_ = exponential((1 - kept) * tilt_of(level_)) * level_;

@@ -31,7 +31,8 @@ void Mapper::add(const Sweep& sweep, const SyncBuffer& sensors, StageTimer& time
   const std::int64_t begin_ns = sweep.end_ns + (sweep.points.empty() ? 0 : sweep.time_ns[0]);
   const Pose before = filter_.pose();
   watch_for_slip(sensors, sweep.end_ns);
-  step_ = dead_reckoning_.advance(sensors, begin_ns, sweep.end_ns, track_, !slip_detector_.slips());
+  step_ = dead_reckoning_.advance(sensors, begin_ns, sweep.end_ns, trajectory_,
+                                  !slip_detector_.slips());
   const bool has_known_attitude = filter_.has_known_attitude();
   const bool was_silent = has_known_attitude && !filter_.knows_attitude();
   filter_.predict(step_);
@@ -41,7 +42,7 @@ void Mapper::add(const Sweep& sweep, const SyncBuffer& sensors, StageTimer& time
     surfels_.clear();
     map_.clear();
   }
-  deskew(sweep, lidar_, track_, sweep_);
+  deskew(sweep, lidar_, trajectory_, sweep_);
   timer.done(Stage::motion);
   const Eigen::Quaterniond predicted = pose().rotation;
   outcome_ = {};

@@ -68,7 +68,7 @@ private:
   std::unique_ptr<Mapper> mapper_;
   Detector map_detector_, sweep_detector_;
   Tracker tracker_, sweep_tracker_;
-  MotionTrack still_;
+  SweepTrajectory still_;
   DeskewedSweep sweep_;  // of a robot that stands
   FixedVector<Obstacle> found_;
   ObstacleList list_;

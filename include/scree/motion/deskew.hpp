@@ -3,11 +3,11 @@
 #include "scree/config/settings.hpp"
 #include "scree/core/point_cloud.hpp"
 #include "scree/core/sweep.hpp"
-#include "scree/motion/dead_reckoning.hpp"
+#include "scree/motion/sweep_trajectory.hpp"
 
 namespace scree {
 
-/// A beam that came back from nothing.
+/// A beam without return.
 struct EmptyBeam {
   Eigen::Vector3f origin, end;  ///< metres; kNoReturnRange apart
 };
@@ -40,7 +40,7 @@ struct DeskewedSweep {
 
 /// Moves every point of a sweep, in the `lidar` frame, to `base` at the sweep's end by the motion
 /// within it. Leaves out points nearer than min_range and farther than max_range.
-void deskew(const Sweep& sweep, const LidarSettings& lidar, const MotionTrack& track,
+void deskew(const Sweep& sweep, const LidarSettings& lidar, const SweepTrajectory& trajectory,
             DeskewedSweep& out);
 
 }  // namespace scree

@@ -62,7 +62,7 @@ private:
   std::uint64_t slips_ = 0;
   bool has_begun_anew_ = false;
   double askew_ = 0;  // rad: error of the turn within a sweep that was guessed; 0 of one measured
-  MotionTrack track_;
+  SweepTrajectory trajectory_;
   DeskewedSweep sweep_;
   PoseFilter filter_;
   Levelling levelling_;

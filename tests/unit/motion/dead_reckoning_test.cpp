@@ -22,14 +22,14 @@ public:
 
   SyncBuffer& sensors() { return *sensors_; }
   DeadReckoning& reckoning() { return reckoning_; }
-  const MotionTrack& track() const { return track_; }
+  const SweepTrajectory& trajectory() const { return trajectory_; }
   /// In the IMU's level frame, from the first sweep's begin on.
   const Eigen::Vector3d& position() const { return position_; }
 
   MotionStep sweep(double end, double shift = 0) {
     const MotionStep step = reckoning_.advance(*sensors_, nanoseconds(end - kSweep + shift),
-                                               nanoseconds(end + shift), track_);
-    position_ += step.moved;
+                                               nanoseconds(end + shift), trajectory_);
+    position_ += step.displacement;
     return step;
   }
   Eigen::Vector3d true_position(double end, double begin = 0) const {
@@ -41,7 +41,7 @@ private:
   SimpleDrive drive_;
   std::unique_ptr<SyncBuffer> sensors_ = std::make_unique<SyncBuffer>();
   DeadReckoning reckoning_;
-  MotionTrack track_;
+  SweepTrajectory trajectory_;
   Eigen::Vector3d position_ = Eigen::Vector3d::Zero();
 };
 
@@ -58,7 +58,7 @@ void expect_exact(SimpleDrive drive) {
     ASSERT_LT(step.attitude.angularDistance(attitude), 1e-4) << end;
     ASSERT_NEAR(step.distance, drive.distance(kSweep), 1e-6);
     for (double before = 0; before <= kSweep; before += 0.0033) {
-      const MotionTrack::Place place = follower.track().at(std::llround(before * 1e9));
+      const SweepTrajectory::Transform place = follower.trajectory().at(std::llround(before * 1e9));
       const Pose truth = test::relative(drive.base(end), drive.base(end - before));
       ASSERT_LT((place.translation.cast<double>() - truth.translation).norm(), 2e-4) << before;
       ASSERT_LT((place.rotation.cast<double>() - truth.rotation.toRotationMatrix()).norm(), 2e-4);
@@ -118,9 +118,9 @@ TEST(DeadReckoning, TakesWhatIsAssumedForASilentSensor) {
   const MotionStep step = follower.sweep(0.8);
   EXPECT_FALSE(step.knows_attitude || step.knows_distance);
   EXPECT_NEAR(step.distance, 0.2, 1e-9);
-  EXPECT_NEAR(step.turned(), 0.05, 1e-9);
+  EXPECT_NEAR(step.rotation_angle(), 0.05, 1e-9);
   EXPECT_NEAR(yaw_of(step.attitude), 0.05, 1e-9);
-  EXPECT_NEAR(step.moved.y(), 0.2 * 0.025, 1e-5);
+  EXPECT_NEAR(step.displacement.y(), 0.2 * 0.025, 1e-5);
 }
 
 TEST(DeadReckoning, StandsWhereNoSensorEverSpeaks) {
@@ -128,25 +128,25 @@ TEST(DeadReckoning, StandsWhereNoSensorEverSpeaks) {
   for (int i = 1; i <= 10; ++i) {
     const MotionStep step = follower.sweep(kSweep * i);
     EXPECT_FALSE(step.knows_attitude || step.knows_distance);
-    EXPECT_EQ(step.moved, Eigen::Vector3d::Zero());
+    EXPECT_EQ(step.displacement, Eigen::Vector3d::Zero());
     EXPECT_EQ(step.attitude.angularDistance(Eigen::Quaterniond::Identity()), 0);
   }
 }
 
-/// The track of a sweep in whose middle the IMU is heard, with another yaw than was believed.
+/// The trajectory of a sweep in whose middle the IMU is heard, with another yaw than was believed.
 void expect_whole(Follower& follower, const SimpleDrive& drive, double end) {
   const MotionStep step = follower.sweep(end);
   EXPECT_TRUE(step.knows_attitude);
   for (double before = 0; before <= kSweep; before += 0.01) {
-    const MotionTrack::Place place = follower.track().at(std::llround(before * 1e9));
+    const SweepTrajectory::Transform place = follower.trajectory().at(std::llround(before * 1e9));
     const Pose truth = test::relative(drive.base(end), drive.base(end - before));
     EXPECT_LT((place.translation.cast<double>() - truth.translation).norm(), 0.01) << before;
     EXPECT_LT((place.rotation.cast<double>() - truth.rotation.toRotationMatrix()).norm(), 0.06)
         << before;
   }
-  EXPECT_NEAR(step.turned(),
+  EXPECT_NEAR(step.rotation_angle(),
               drive.base(end - kSweep).rotation.angularDistance(drive.base(end).rotation), 0.06);
-  const Eigen::Vector3d moved = step.begin_attitude.conjugate() * step.moved;
+  const Eigen::Vector3d moved = step.begin_attitude.conjugate() * step.displacement;
   const Pose truth = test::relative(drive.base(end - kSweep), drive.base(end));
   EXPECT_LT((moved - truth.translation).norm(), 0.01);
 }
@@ -218,14 +218,14 @@ TEST(DeadReckoning, TakesInstantsThatAreOneAndAllocatesNothing) {
   Follower follower(drive);
   drive.put(follower.sensors(), 0, 2);
   const std::size_t before = test::allocations();
-  MotionTrack track;
+  SweepTrajectory trajectory;
   const std::size_t made = test::allocations();
   for (const std::int64_t t : {nanoseconds(0.5), nanoseconds(0.5), nanoseconds(0.5) + 1}) {
-    const MotionStep step = follower.reckoning().advance(follower.sensors(), t, t, track);
+    const MotionStep step = follower.reckoning().advance(follower.sensors(), t, t, trajectory);
     EXPECT_GE(step.seconds(), 0);
-    EXPECT_LT(step.moved.norm(), 1e-6);
-    EXPECT_TRUE(track.at(0).rotation.allFinite());
-    EXPECT_TRUE(track.at(100'000'000).rotation.allFinite());
+    EXPECT_LT(step.displacement.norm(), 1e-6);
+    EXPECT_TRUE(trajectory.at(0).rotation.allFinite());
+    EXPECT_TRUE(trajectory.at(100'000'000).rotation.allFinite());
   }
   follower.sweep(1.9);
   EXPECT_EQ(test::allocations(), made);

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "motion/simple_drive.hpp"
+#include "scree/motion/dead_reckoning.hpp"
 
 namespace scree {
 namespace {
@@ -30,15 +31,15 @@ protected:
   LidarSettings lidar_ = mounted();
   Sweep sweep_{1 << 14};
   DeskewedSweep out_{1 << 14};
-  MotionTrack track_;
+  SweepTrajectory trajectory_;
 
   void follow() {
     const auto sensors = std::make_unique<SyncBuffer>();
     drive_.put(*sensors, 0, 1.2);
     DeadReckoning reckoning(drive_.imu_mount);
     sweep_.end_ns = test::nanoseconds(kEnd);
-    reckoning.advance(*sensors, test::nanoseconds(kEnd - kLength), sweep_.end_ns, track_);
-    deskew(sweep_, lidar_, track_, out_);
+    reckoning.advance(*sensors, test::nanoseconds(kEnd - kLength), sweep_.end_ns, trajectory_);
+    deskew(sweep_, lidar_, trajectory_, out_);
   }
   /// A beam at a time in each direction of a turn, three together; `range` of beams in the world.
   template <class Range>
@@ -146,13 +147,13 @@ TEST_F(DeskewTest, CountsWhatDoesNotFitAndTakesAnEmptySweep) {
   EXPECT_EQ(out_.origins.size(), 100U);
   EXPECT_EQ(out_.dropped, 2900U);
   sweep_.clear();
-  deskew(sweep_, lidar_, track_, out_);
+  deskew(sweep_, lidar_, trajectory_, out_);
   EXPECT_EQ(out_.points.size(), 0U);
   EXPECT_EQ(out_.dropped, 0U);
 }
 
 TEST_F(DeskewTest, ARobotThatStandsChangesNothing) {
-  const MotionTrack still;
+  const SweepTrajectory still;
   sweep_.push_back({3, 2, 1}, 7, -90'000'000, 0);
   deskew(sweep_, lidar_, still, out_);
   ASSERT_EQ(out_.points.size(), 1U);

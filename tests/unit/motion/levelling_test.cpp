@@ -25,7 +25,7 @@ protected:
     levelling_ = Levelling(drive.imu_translation);
     DeadReckoning reckoning(drive.imu_mount);
     const auto sensors = std::make_unique<SyncBuffer>();
-    MotionTrack track;
+    SweepTrajectory trajectory;
     pose_ = {};
     farthest_jump_ = 0;
     for (int i = 0; i * kStep < until; ++i) {
@@ -39,12 +39,13 @@ protected:
       }
       sensors->gather();
       const Eigen::Vector3d before = levelling_.to_odom() * pose_.translation;
-      const MotionStep step = reckoning.advance(*sensors, test::nanoseconds(kStep * i),
-                                                test::nanoseconds(kStep * (i + 1) - 0.01), track);
-      pose_ = {pose_.translation + step.moved, step.attitude};
+      const MotionStep step =
+          reckoning.advance(*sensors, test::nanoseconds(kStep * i),
+                            test::nanoseconds(kStep * (i + 1) - 0.01), trajectory);
+      pose_ = {pose_.translation + step.displacement, step.attitude};
       levelling_.advance(*sensors, step, pose_);
       const double way = (levelling_.to_odom() * pose_.translation - before).norm();
-      farthest_jump_ = std::max(farthest_jump_, std::abs(way - step.moved.norm()));
+      farthest_jump_ = std::max(farthest_jump_, std::abs(way - step.displacement.norm()));
     }
   }
   /// Of the map's vertical in `odom`, as the truth has it.

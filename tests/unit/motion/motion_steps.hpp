@@ -14,7 +14,7 @@ inline MotionStep step_of(const Eigen::Quaterniond& from, const Eigen::Quaternio
   step.end_ns = std::llround(seconds * 1e9);
   step.begin_attitude = from;
   step.attitude = to;
-  step.moved = from.slerp(0.5, to) * Eigen::Vector3d(way, 0, 0);
+  step.displacement = from.slerp(0.5, to) * Eigen::Vector3d(way, 0, 0);
   step.distance = way;
   step.knows_attitude = step.knows_distance = true;
   return step;

@@ -107,7 +107,7 @@ TEST(RangeScatter, IsLargeAmongBladesOfGrass) {
 TEST(RangeScatter, ShotsWithoutNeighboursScatterMost) {
   for (const auto& ranges :
        {std::vector<double>{5}, {5, 5}, {5, 0, 0, 0, 5, 0, 0, 0, 5}, {5, 5, 0, 0, 0, 5, 5}}) {
-    for (const float scatter : scatter_of(ranges)) EXPECT_EQ(scatter, RangeScatter::kMost);
+    for (const float scatter : scatter_of(ranges)) EXPECT_EQ(scatter, RangeScatter::kMaxScatter);
   }
   const auto gap = scatter_of({5, 5, 5, 0, 0, 0, 6, 6, 6});
   EXPECT_LT(std::ranges::max(gap), 1e-5) << "threes on both sides of it";
@@ -173,7 +173,7 @@ TEST(RangeScatter, TwoReturnsOfAShotAreNoNeighbours) {
     turn.add(3, shot(kPerShot * i, 8));
   }
   for (std::size_t i = 0; i < turn.scatter.size(); ++i) {
-    EXPECT_NEAR(turn.scatter[i], i % 2 == 0 ? 0 : RangeScatter::kMost, 1e-5) << i;
+    EXPECT_NEAR(turn.scatter[i], i % 2 == 0 ? 0 : RangeScatter::kMaxScatter, 1e-5) << i;
   }
 }
 
@@ -189,7 +189,7 @@ TEST(RangeScatter, TakesAnythingAndNoMoreThanFits) {
   EXPECT_EQ(turn.is_isolated.size(), 100U);
   for (const float each : turn.scatter) {
     EXPECT_GE(each, 0);
-    EXPECT_LE(each, RangeScatter::kMost);
+    EXPECT_LE(each, RangeScatter::kMaxScatter);
   }
 }
 

@@ -174,7 +174,7 @@ TEST_F(RegistrationTest, WorksManyKilometresFromTheOrigin) {
   step.knows_attitude = step.knows_distance = true;
   filter_.predict(step);
   step.end_ns = 2'000'000'000;
-  step.moved.x() = kFar;
+  step.displacement.x() = kFar;
   step.distance = 500;
   filter_.predict(step);
   const Pose truth{{0.08, -0.05, 0.03}, from_roll_pitch_yaw(0.005, -0.004, 0)};

@@ -1,0 +1,19 @@
+#include "scree/motion/sweep_trajectory.hpp"
+
+#include <algorithm>
+
+namespace scree {
+
+SweepTrajectory::Transform SweepTrajectory::at(std::int64_t before_end_ns) const {
+  const float step = static_cast<float>(before_end_ns) / static_cast<float>(step_ns_);
+  const auto index = static_cast<std::size_t>(std::max(step, 0.0F));
+  if (index + 1 >= transforms_.size()) return transforms_.back();
+  const float share = step - static_cast<float>(index);
+  const Transform& late = transforms_[index];
+  const Transform& early = transforms_[index + 1];
+  // Within 5 ms the turn is so small that the matrices may be mixed.
+  return {late.rotation + share * (early.rotation - late.rotation),
+          late.translation + share * (early.translation - late.translation)};
+}
+
+}  // namespace scree
