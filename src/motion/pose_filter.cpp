@@ -11,8 +11,10 @@
 namespace scree {
 namespace {
 
-// Standard deviations of what dead reckoning gets wrong.
-constexpr double kTiltSeconds = 20;    // the IMU's roll and pitch wander this fast
+// Standard deviations of what dead reckoning gets wrong. Chosen on simulated drives; the IMU's are
+// of the size that the simulator gives an MTi.
+constexpr double kTiltSeconds = 20;    // the errors of roll and pitch are correlated this long
+constexpr double kUnknownTilt = 0.1;   // rad: no IMU has been heard yet
 constexpr double kYawWalk = 0.0005;    // rad in a square root of a second
 constexpr double kDrift = 0.001;       // of the yaw, rad/s
 constexpr double kDriftWalk = 0.001;   // rad/s in a square root of a second: heading filters wander
@@ -25,9 +27,9 @@ constexpr double kShake = 0.001;       // metres in each direction each step
 constexpr double kSilentTurn = 0.08;   // while the IMU is silent, rad in a square root of a second
 constexpr double kSilentTilt = 0.032;  // the same of roll and pitch
 constexpr double kSilentWay = 0.13;    // while the encoder is, metres in a square root of a second
-constexpr double kAnotherYaw = 0.04;   // rad: an IMU that comes back this far off, ...
-constexpr double kSurely = 3;          // ... and so many standard deviations, has restarted ...
-constexpr double kAnotherYawError = 0.05;  // ... and takes up the yaw this well, rad
+constexpr double kRestartYaw = 0.04;   // rad: an IMU that comes back this far off, ...
+constexpr double kRestartSigmas = 3;   // ... and so many standard deviations, has restarted ...
+constexpr double kRestartYawError = 0.05;  // ... and takes up the yaw this well, rad
 
 double square(double value) {
   return value * value;
@@ -45,41 +47,68 @@ Eigen::Vector3d tilt_of(const Eigen::Quaterniond& frame) {
   return {up.y(), -up.x(), 0};
 }
 
-/// Rad, +-pi.
+/// The yaw from one attitude to the other, rad, within +-pi.
 double yaw_between(const Eigen::Quaterniond& from, const Eigen::Quaterniond& to) {
   return std::remainder(yaw_of(to) - yaw_of(from), 2 * std::numbers::pi);
 }
 
-/// As the IMU says, rad.
-double yawed_in(const MotionStep& step) {
+/// By the IMU, rad.
+double yaw_change_of(const MotionStep& step) {
   return yaw_between(step.begin_attitude, step.attitude);
 }
 
 bool is_still(const MotionStep& step) {
-  constexpr double kMostWay = 0.002;  // metres a step: no more than a count or two of the wheel
-  constexpr double kMostTurn = 0.01;  // rad/s of yaw: an IMU drifts less, a robot turns faster
-  return step.knows_attitude && step.knows_distance && std::abs(step.distance) < kMostWay &&
-         std::abs(yawed_in(step)) < kMostTurn * step.seconds();
+  constexpr double kMaxWay = 0.002;  // metres a step: no more than a count or two of the wheel
+  constexpr double kMaxTurn = 0.01;  // rad/s of yaw: an IMU drifts less, a robot turns faster
+  return step.knows_attitude && step.knows_distance && std::abs(step.distance) < kMaxWay &&
+         std::abs(yaw_change_of(step)) < kMaxTurn * step.seconds();
 }
 
 }  // namespace
 
+void PoseFilter::start(const MotionStep& step) {
+  started_ = true;
+  level_ = exponential({0, 0, -yaw_of(step.attitude)});
+  attitude_ = step.attitude;
+  pose_ = {Eigen::Vector3d::Zero(), level_ * step.attitude};
+  knew_attitude_ = step.knows_attitude;
+  covariance_.setZero();
+  covariance_(3, 3) = covariance_(4, 4) = square(knew_attitude_ ? kTilt : kUnknownTilt);
+  covariance_(6, 6) = square(kScale);
+  covariance_(7, 7) = square(kDrift);
+}
+
 void PoseFilter::predict(const MotionStep& step) {
-  if (!started_) {
-    started_ = true;
-    level_ = exponential({0, 0, -yaw_of(step.attitude)});
-    attitude_ = step.attitude;
-    pose_ = {Eigen::Vector3d::Zero(), level_ * step.attitude};
-    covariance_.setZero();
-    covariance_(3, 3) = covariance_(4, 4) = square(kTilt);
-    covariance_(6, 6) = square(kScale);
-    covariance_(7, 7) = square(kDrift);
-    knew_attitude_ = step.knows_attitude;
-    if (knew_attitude_) return;
-    covariance_(3, 3) = covariance_(4, 4) = square(0.1);
-    return;
-  }
+  if (!started_) return start(step);
+  watch_silence(step);
+  const bool is_at_rest = watch_rest(step);
+  knew_attitude_ = step.knows_attitude;
+  if (is_at_rest) update_zero_rate(step);
+
   const double seconds = step.seconds();
+  const double drift_seconds = is_at_rest ? 0 : seconds;  // the yaw goes on by the IMU alone
+  const double tilt_kept = std::exp(-seconds / kTiltSeconds);
+  const Eigen::Vector3d displacement = level_ * step.displacement * (1 + scale_);
+  level_ = exponential({0, 0, drift_ * drift_seconds}) * level_;
+  if (step.knows_attitude) level_ = exponential((1 - tilt_kept) * tilt_of(level_)) * level_;
+
+  Covariance transition = Covariance::Identity();
+  transition.block<3, 3>(0, 3) = -cross(displacement);
+  transition.block<3, 1>(0, 6) = displacement / (1 + scale_);
+  transition(5, 7) = drift_seconds;
+  if (step.knows_attitude) transition(3, 3) = transition(4, 4) = tilt_kept;
+  covariance_ = transition * covariance_ * transition.transpose();
+  add_position_noise(step);
+  add_noise(step, drift_seconds, tilt_kept);
+
+  attitude_ = step.attitude;
+  pose_.translation += displacement;
+  pose_.rotation = (level_ * attitude_).normalized();
+}
+
+/// Keeps what was known of the level frame when the IMU fell silent, and realigns the frame when it
+/// speaks again.
+void PoseFilter::watch_silence(const MotionStep& step) {
   if (knew_attitude_ && !step.knows_attitude) {
     level_before_ = level_;
     tilt_before_ = std::max(covariance_(3, 3), covariance_(4, 4));
@@ -87,84 +116,73 @@ void PoseFilter::predict(const MotionStep& step) {
     silent_s_ = 0;
     has_known_attitude_ = true;
   }
-  if (!step.knows_attitude) silent_s_ += seconds;
-  const bool is_back = !knew_attitude_ && step.knows_attitude;
-  if (is_back) join(step);
-  const bool is_at_rest = knew_attitude_ && is_still(step);
-  knew_attitude_ = step.knows_attitude;
-  constexpr double kStandingAfter = 0.3;  // seconds: the body has come to rest
-  standing_s_ = is_at_rest ? standing_s_ + seconds : 0;
-  const bool stands = standing_s_ > kStandingAfter;
-  if (stands) stand(step);
-  const double drifting_s = stands ? 0 : seconds;  // that the yaw goes on by the IMU alone
+  if (!step.knows_attitude) silent_s_ += step.seconds();
+  if (!knew_attitude_ && step.knows_attitude) realign_level_frame(step);
+}
 
-  const Eigen::Vector3d moved = level_ * step.displacement * (1 + scale_);
-  level_ = exponential({0, 0, drift_ * drifting_s}) * level_;
-  const double kept = std::exp(-seconds / kTiltSeconds);
-  if (step.knows_attitude) level_ = exponential((1 - kept) * tilt_of(level_)) * level_;
+/// Whether the robot stands, and has done so for a while.
+bool PoseFilter::watch_rest(const MotionStep& step) {
+  constexpr double kRestAfter = 0.3;  // seconds: the body has come to rest
+  rest_s_ = knew_attitude_ && is_still(step) ? rest_s_ + step.seconds() : 0;
+  return rest_s_ > kRestAfter;
+}
 
-  Covariance transition = Covariance::Identity();
-  transition.block<3, 3>(0, 3) = -cross(moved);
-  transition.block<3, 1>(0, 6) = moved / (1 + scale_);
-  transition(5, 7) = drifting_s;
-  if (step.knows_attitude) {
-    transition(3, 3) = transition(4, 4) = kept;
-  }
-  covariance_ = transition * covariance_ * transition.transpose();
-
+/// A wheel slips along and across its way, and rough ground lifts the robot.
+void PoseFilter::add_position_noise(const MotionStep& step) {
   const double distance = std::abs(step.distance);
   const Eigen::Matrix3d to_map = (level_ * step.attitude).toRotationMatrix();
-  Eigen::Vector3d way(square(kSlip) * distance, square(kSideSlip) * distance,
-                      square(kHeave) * distance);
-  way.array() += square(kShake);
-  if (!step.knows_distance) {
-    way.x() += square(kSilentWay) * seconds;
-  }
-  covariance_.block<3, 3>(0, 0) += to_map * way.asDiagonal() * to_map.transpose();
+  Eigen::Vector3d variances(square(kSlip) * distance, square(kSideSlip) * distance,
+                            square(kHeave) * distance);
+  variances.array() += square(kShake);
+  if (!step.knows_distance) variances.x() += square(kSilentWay) * step.seconds();
+  covariance_.block<3, 3>(0, 0) += to_map * variances.asDiagonal() * to_map.transpose();
+}
+
+void PoseFilter::add_noise(const MotionStep& step, double drift_seconds, double tilt_kept) {
+  const double seconds = step.seconds();
   if (step.knows_attitude) {
-    const double wander = square(kTilt) * (1 - square(kept));
-    covariance_(3, 3) += wander;
-    covariance_(4, 4) += wander;
-    covariance_(5, 5) += square(kYawWalk) * drifting_s;
+    const double tilt = square(kTilt) * (1 - square(tilt_kept));
+    covariance_(3, 3) += tilt;
+    covariance_(4, 4) += tilt;
+    covariance_(5, 5) += square(kYawWalk) * drift_seconds;
   } else {
     covariance_(3, 3) += square(kSilentTilt) * seconds;
     covariance_(4, 4) += square(kSilentTilt) * seconds;
     covariance_(5, 5) += square(kSilentTurn) * seconds;
   }
-  covariance_(6, 6) += square(kScaleWalk) * distance;
+  covariance_(6, 6) += square(kScaleWalk) * std::abs(step.distance);
   covariance_(7, 7) += square(kDriftWalk) * seconds;
-
-  attitude_ = step.attitude;
-  pose_.translation += moved;
-  pose_.rotation = (level_ * attitude_).normalized();
 }
 
-/// A robot that stands does not turn: its yaw stays, and the turn that the IMU sees is its drift.
-void PoseFilter::stand(const MotionStep& step) {
-  const double yawed = yawed_in(step), seconds = step.seconds();
+/// A zero-angular-rate update: a robot that stands does not turn. Its yaw stays, and the turn that
+/// the IMU sees is its drift.
+void PoseFilter::update_zero_rate(const MotionStep& step) {
+  const double yaw_change = yaw_change_of(step), seconds = step.seconds();
   const double noise = square(kYawWalk) / seconds;
   const Errors gain = covariance_.col(7) / (covariance_(7, 7) + noise);
-  apply(gain * (-yawed / seconds - drift_));
+  apply(gain * (-yaw_change / seconds - drift_));
   covariance_ -= (gain * covariance_.row(7)).eval();
-  level_ = exponential({0, 0, -yawed}) * level_;
+  level_ = exponential({0, 0, -yaw_change}) * level_;
 }
 
-/// Takes up the level frame of an IMU that speaks again.
-void PoseFilter::join(const MotionStep& step) {
-  // Its yaw went on while it was silent, unless it started over, or was never heard before.
-  const Eigen::Quaterniond gone_on = exponential({0, 0, drift_ * silent_s_}) * level_before_;
+/// Takes up the level frame of an IMU that speaks again. Its yaw went on while it was silent,
+/// unless it has restarted, or was never heard before.
+void PoseFilter::realign_level_frame(const MotionStep& step) {
+  const Eigen::Quaterniond continued = exponential({0, 0, drift_ * silent_s_}) * level_before_;
   const Eigen::Quaterniond believed =
       pose_.rotation * step.begin_attitude.conjugate() * step.attitude;
-  const double turned = yaw_between(believed, gone_on * step.attitude);
-  const double yaw_gone_on = yaw_before_ + square(kDrift * silent_s_);
-  const double off = std::max(kAnotherYaw, kSurely * std::sqrt(covariance_(5, 5) + yaw_gone_on));
-  const bool goes_on = has_known_attitude_ && std::abs(turned) < off;
-  const double yaw = goes_on ? yaw_gone_on : covariance_(5, 5) + square(kAnotherYawError);
-  level_ = goes_on ? gone_on : exponential({0, 0, yaw_of(believed) - yaw_of(step.attitude)});
+  const double apart = yaw_between(believed, continued * step.attitude);
+  const double continued_variance = yaw_before_ + square(kDrift * silent_s_);
+  const double limit =
+      std::max(kRestartYaw, kRestartSigmas * std::sqrt(covariance_(5, 5) + continued_variance));
+  const bool goes_on = has_known_attitude_ && std::abs(apart) < limit;
+  const double yaw_variance =
+      goes_on ? continued_variance : covariance_(5, 5) + square(kRestartYawError);
+  level_ = goes_on ? continued : exponential({0, 0, yaw_of(believed) - yaw_of(step.attitude)});
   covariance_.block<3, kErrors>(3, 0).setZero();
   covariance_.block<kErrors, 3>(0, 3).setZero();
   covariance_(3, 3) = covariance_(4, 4) = std::max(tilt_before_, square(kTilt));
-  covariance_(5, 5) = yaw;
+  covariance_(5, 5) = yaw_variance;
 }
 
 void PoseFilter::begin_update() {

@@ -8,17 +8,17 @@
 
 namespace scree {
 
-/// What is known of a pose beyond dead reckoning, as the sum of squares e^T information e + 2
-/// gradient^T e of an error e: position in the map's frame (m), then rotation vector in it (rad).
+/// What a measurement knows of a pose: the sum of squares e^T information e + 2 gradient^T e of an
+/// error e. That is the position in the map's frame (m), then the rotation vector in it (rad).
 struct PoseEvidence {
   Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 6, 1> gradient = Eigen::Matrix<double, 6, 1>::Zero();
 };
 
 /// The pose of `base` in the map's frame, and how well it is known: an iterated extended Kalman
-/// filter. Predicts by dead reckoning; evidence from registration corrects it only in the
-/// directions that it binds. Beside the pose it estimates the encoder's scale and the drift of the
-/// IMU's yaw; the latter while the robot stands, too: then its yaw stays as it is.
+/// filter. It predicts by dead reckoning; evidence from registration corrects it only in the
+/// directions that the evidence binds. Beside the pose it estimates the encoder's scale and the
+/// drift of the IMU's yaw. It does so while the robot stands, too: then its yaw stays as it is.
 ///
 /// Its errors, in order: position in the map's frame (3, m), rotation vector in it (3, rad),
 /// relative error of the encoder's scale, drift of the IMU's yaw (rad/s).
@@ -33,10 +33,12 @@ public:
   /// the `level` frame at the same pose.
   void predict(const MotionStep& step);
 
-  /// One round of an iterated update: evidence linearised at pose(). Call begin_update() first;
-  /// returns the size of the correction: metres plus radians.
+  /// Begins an iterated update.
   void begin_update();
+  /// One round of it. @param evidence linearised at pose()
+  /// @return the size of the correction: metres plus radians
   double update(const PoseEvidence& evidence);
+  /// @param evidence of the last round
   void end_update(const PoseEvidence& evidence);
 
   const Pose& pose() const { return pose_; }
@@ -56,8 +58,13 @@ public:
   bool has_known_attitude() const { return has_known_attitude_ || knew_attitude_; }
 
 private:
-  void join(const MotionStep& step);
-  void stand(const MotionStep& step);
+  void start(const MotionStep& step);
+  void watch_silence(const MotionStep& step);
+  bool watch_rest(const MotionStep& step);
+  void update_zero_rate(const MotionStep& step);
+  void realign_level_frame(const MotionStep& step);
+  void add_position_noise(const MotionStep& step);
+  void add_noise(const MotionStep& step, double drift_seconds, double tilt_kept);
   void apply(const Errors& error);
 
   Pose pose_;
@@ -70,7 +77,7 @@ private:
   Eigen::Quaterniond level_before_ = Eigen::Quaterniond::Identity();
   double tilt_before_ = 0, yaw_before_ = 0;  // variances
   double silent_s_ = 0;
-  double standing_s_ = 0;
+  double rest_s_ = 0;
   // During an update.
   Covariance prior_;
   Errors applied_;
