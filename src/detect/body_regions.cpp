@@ -21,7 +21,7 @@ BodyRegions::BodyRegions(std::size_t max_points, std::size_t max_cells)
       sizes_(max_points) {}
 
 void BodyRegions::label(const EdgePoints& bodies, const GroundSurface& surface,
-                        const Solidity& solidity, const BodyRegionSettings& settings) {
+                        const BeamGrid& solidity, const BodyRegionSettings& settings) {
   columns_ = surface.columns();
   labels_.assign(bodies.size(), kNoLabel);
   sizes_.clear();
@@ -39,7 +39,7 @@ void BodyRegions::label(const EdgePoints& bodies, const GroundSurface& surface,
 }
 
 void BodyRegions::mark(const EdgePoints& bodies, Side side, const GroundSurface& surface,
-                       const Solidity& solidity) {
+                       const BeamGrid& solidity) {
   const std::size_t cells = columns_ * surface.rows();
   state_.resize(cells);
   for (std::size_t cell = 0; cell < cells; ++cell) {
@@ -51,7 +51,7 @@ void BodyRegions::mark(const EdgePoints& bodies, Side side, const GroundSurface&
     const std::size_t cell = surface.cell_at(bodies.points.x[i], bodies.points.y[i]);
     state_[cell] = side == Side::above && solidity.is_loose(cell) ? loose : firm;
     // Holes have no tops: their floors are seldom seen, and what is seen of a wall has any depth.
-    const float share = solidity.of(cell);
+    const float share = solidity.ended_share(cell);
     top_[cell] = std::max(top_[cell], bodies.height[i] * (share * share));
   }
 }

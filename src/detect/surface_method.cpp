@@ -28,7 +28,7 @@ SurfaceMethod::SurfaceMethod(const SurfaceSettings& settings, double clearance,
       gradient_(gradient_of(settings.kernel, settings.kernel_shared)),
       sloped_(limits.points),
       surface_(limits.points, limits.ground_cells),
-      solidity_(limits.ground_cells),
+      beam_grid_(limits.ground_cells),
       height_(limits.points),
       is_off_ground_(limits.points),
       candidates_(limits.candidates),
@@ -74,10 +74,10 @@ void SurfaceMethod::build_ground(PointView cloud, std::span<const BeamCount> bea
   const GroundSurfaceSettings ground = ground_surface_of(settings_);
   const auto lowest = static_cast<float>(settings_.body_height);
   surface_.build(sloped_.points(), ground);
-  solidity_.build(cloud, beams, surface_, lowest, highest_);
-  if (solidity_.has_loose()) {
-    surface_.build_below(solidity_.loose(), ground);
-    solidity_.build(cloud, beams, surface_, lowest, highest_);
+  beam_grid_.build(cloud, beams, surface_, lowest, highest_);
+  if (beam_grid_.has_loose()) {
+    surface_.build_below(beam_grid_.loose(), ground);
+    beam_grid_.build(cloud, beams, surface_, lowest, highest_);
   }
   if (!beams.empty()) leave_out_ground_below_edges();
 }
@@ -88,7 +88,7 @@ void SurfaceMethod::leave_out_ground_below_edges() {
   const auto highest = static_cast<float>(settings_.body_height);
   sloped_.cells.remove([&](std::size_t i) {
     const float x = points.x[i], y = points.y[i];
-    return solidity_.stops_all(surface_.cell_at(x, y)) &&
+    return beam_grid_.stops_all(surface_.cell_at(x, y)) &&
            std::abs(points.z[i] - surface_.height(x, y)) < highest;
   });
 }
@@ -102,7 +102,7 @@ void SurfaceMethod::mark_points_off_ground() {
     height_[i] = points.z[i] - surface_.height(points.x[i], points.y[i]);
     const std::size_t cell = surface_.cell_at(points.x[i], points.y[i]);
     // Among grass the ground is seen, and what stands on it.
-    const bool is_ground = surface_.is_ground(cell) && !solidity_.is_loose(cell);
+    const bool is_ground = surface_.is_ground(cell) && !beam_grid_.is_loose(cell);
     is_off_ground_[i] = std::abs(height_[i]) >= least && !is_ground ? 1 : 0;
   }
 }
@@ -126,7 +126,7 @@ void SurfaceMethod::cluster(StageCounts& counts) {
   const auto tolerance = static_cast<float>(settings_.cluster_tolerance);
   const auto min_size = static_cast<std::uint32_t>(settings_.min_cluster_size);
   if (regions_) {
-    regions_->label(kept_, surface_, solidity_, {tolerance, static_cast<float>(settings_.saddle)});
+    regions_->label(kept_, surface_, beam_grid_, {tolerance, static_cast<float>(settings_.saddle)});
     clusters_.gather(kept_, regions_->labels(), regions_->sizes(), min_size);
   } else {
     split_by_sign(kept_, tolerance, split_);
@@ -142,7 +142,7 @@ void SurfaceMethod::measure_clusters(const PointCloud& points) {
     const auto members = clusters_.members(cluster);
     cluster.ground = surface_.height(cluster.box.center_x, cluster.box.center_y);
     cluster.features = measure(kept_, members);
-    surroundings_.measure(cluster, members, kept_, surface_, solidity_);
+    surroundings_.measure(cluster, members, kept_, surface_, beam_grid_);
   }
 }
 

@@ -68,7 +68,7 @@ bool Surroundings::is_amid_ground(float x, float y, const GroundSurface& surface
 
 void Surroundings::measure(Cluster& cluster, std::span<const std::uint32_t> members,
                            const EdgePoints& edges, const GroundSurface& surface,
-                           const Solidity& solidity) {
+                           const BeamGrid& beams) {
   constexpr std::size_t kRim = 2;  // cells
   ++number_;
   cells_.clear();
@@ -98,7 +98,7 @@ void Surroundings::measure(Cluster& cluster, std::span<const std::uint32_t> memb
   const auto cells = static_cast<float>(cells_.size());
   constexpr float kAround = 0.3F, kFurtherAround = 0.6F;
   float inside = 0, unseen = 0, around = 0, ground = 0, level_cells = 0, uneven = 0;
-  float loose = 0, highest_loose = 0, beams = 0, scatter = 0;
+  float loose = 0, highest_loose = 0, ended = 0, scatter = 0;
   const OrientedBox& box = cluster.box;
   const float reach = std::hypot(box.length, box.width) / 2 + kFurtherAround,
               step = surface.cell_size();
@@ -109,8 +109,8 @@ void Surroundings::measure(Cluster& cluster, std::span<const std::uint32_t> memb
       if (distance > kFurtherAround) continue;
       const std::size_t cell = surface.cell_at(x, y);
       if (distance > 0) {
-        beams += solidity.all_ended(cell);
-        scatter += solidity.all_scatter(cell);
+        ended += beams.all_ended(cell);
+        scatter += beams.all_scatter(cell);
         if (surface.is_ground(cell)) {
           ++level_cells;
           uneven += surface.roughness(cell);
@@ -124,9 +124,9 @@ void Surroundings::measure(Cluster& cluster, std::span<const std::uint32_t> memb
       }
       ++around;
       if (surface.is_ground(cell)) ++ground;
-      if (!solidity.is_loose(cell)) continue;
+      if (!beams.is_loose(cell)) continue;
       ++loose;
-      highest_loose = std::max(highest_loose, solidity.highest(cell));
+      highest_loose = std::max(highest_loose, beams.highest(cell));
     }
   }
   Features& features = cluster.features;
@@ -138,7 +138,7 @@ void Surroundings::measure(Cluster& cluster, std::span<const std::uint32_t> memb
   features[ground_share] = ground / std::max(around, 1.0F);
   features[loose_around] = loose / std::max(around, 1.0F);
   features[over_loose] = features[max_height] - highest_loose;
-  features[ground_scatter] = scatter / std::max(beams, 1.0F);
+  features[ground_scatter] = scatter / std::max(ended, 1.0F);
   features[through_share] = through / static_cast<float>(members.size());
   features[cell_points] = static_cast<float>(members.size()) / cells;
   features[cell_spread] = spread / cells;
@@ -147,8 +147,8 @@ void Surroundings::measure(Cluster& cluster, std::span<const std::uint32_t> memb
   for (const std::uint32_t cell : cells_) values_.push_back(steepest_[cell]);
   features[Feature::steepest] = quantile({values_.data(), values_.size()}, 0.9);
   measure_edge(features, surface);
-  measure_solidity(features, solidity);
-  measure_scatter(features, solidity);
+  measure_solidity(features, beams);
+  measure_scatter(features, beams);
 }
 
 /// A rock's edge is nearly as high as the rock, a mound begins low.
@@ -169,39 +169,39 @@ void Surroundings::measure_edge(Features& features, const GroundSurface& surface
   features[edge_height] = values_.empty() ? 0 : quantile({values_.data(), values_.size()}, 0.5);
 }
 
-void Surroundings::measure_solidity(Features& features, const Solidity& solidity) {
+void Surroundings::measure_solidity(Features& features, const BeamGrid& beams) {
   constexpr float kSolid = 0.7F;
   const float half = half_height(features);
   float solid = 0, top_ended = 0, top_passed = 0;
   values_.clear();
   for (const std::uint32_t cell : cells_) {
-    if (solidity.of(cell) >= kSolid) ++solid;
-    values_.push_back(solidity.around(cell));
+    if (beams.ended_share(cell) >= kSolid) ++solid;
+    values_.push_back(beams.ended_share_around(cell));
     if (std::max(highest_[cell], -lowest_[cell]) < half) continue;
-    top_ended += solidity.ended(cell);
-    top_passed += solidity.passed(cell);
+    top_ended += beams.ended(cell);
+    top_passed += beams.passed(cell);
   }
   features[solid_share] = solid / static_cast<float>(cells_.size());
-  features[top_solidity] = Solidity::share(top_ended, top_passed);
+  features[top_solidity] = BeamGrid::share(top_ended, top_passed);
   features[core_solidity] = quantile({values_.data(), values_.size()}, 0.75);
 }
 
 /// A rock that grass grows against has cells of both.
-void Surroundings::measure_scatter(Features& features, const Solidity& solidity) {
+void Surroundings::measure_scatter(Features& features, const BeamGrid& beams) {
   float ended = 0, firm = 0, firm_ended = 0, solid = 0, most_solid = 0, all = 0, scatter = 0;
   values_.clear();
   for (const std::uint32_t cell : cells_) {
-    const float here = solidity.ended(cell), mean = solidity.scatter(cell) / std::max(here, 1.0F);
+    const float here = beams.ended(cell), mean = beams.scatter(cell) / std::max(here, 1.0F);
     values_.push_back(mean);
     ended += here;
-    if (mean < Solidity::kFirmScatter) {
+    if (mean < BeamGrid::kFirmScatter) {
       ++firm;
       firm_ended += here;
     }
-    solid += solidity.solid(cell);
-    most_solid = std::max(most_solid, solidity.solid(cell));
-    all += solidity.all_ended(cell);
-    scatter += solidity.all_scatter(cell);
+    solid += beams.solid(cell);
+    most_solid = std::max(most_solid, beams.solid(cell));
+    all += beams.all_ended(cell);
+    scatter += beams.all_scatter(cell);
   }
   features[beam_count] = ended;
   features[range_scatter] = quantile({values_.data(), values_.size()}, 0.5);

@@ -22,7 +22,7 @@ SurfaceRung::SurfaceRung(const DetectSettings& settings, const DetectorLimits& l
       points_(limits.points),
       sloped_(limits.points),
       surface_(limits.points, limits.ground_cells),
-      solidity_(limits.ground_cells),
+      beam_grid_(limits.ground_cells),
       candidates_(limits.candidates),
       kept_(limits.candidates),
       split_(limits.candidates),
@@ -37,8 +37,8 @@ ClusteredPoints SurfaceRung::find(PointView cloud) {
   sloped_.cells.build(points_, gradient_.reach());
   surface_.build(sloped_.points(), ground_surface_of(settings_.surface));
   // Nothing is known of the beams of a cloud, so all is solid.
-  solidity_.build(cloud, {}, surface_, static_cast<float>(settings_.surface.body_height),
-                  static_cast<float>(settings_.clearance));
+  beam_grid_.build(cloud, {}, surface_, static_cast<float>(settings_.surface.body_height),
+                   static_cast<float>(settings_.clearance));
   sloped_.compute(gradient_, {});
   gather_candidates();
   cluster();
@@ -103,7 +103,7 @@ void SurfaceRung::measure_clusters() {
     const auto members = clusters_.members(cluster);
     cluster.ground = surface_.height(cluster.box.center_x, cluster.box.center_y);
     cluster.features = measure(kept_, members);
-    surroundings_.measure(cluster, members, kept_, surface_, solidity_);
+    surroundings_.measure(cluster, members, kept_, surface_, beam_grid_);
   }
 }
 

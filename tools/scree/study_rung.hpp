@@ -2,12 +2,12 @@
 
 #include "scree/config/settings.hpp"
 #include "scree/core/point_cloud.hpp"
+#include "scree/detect/beam_grid.hpp"
 #include "scree/detect/clusters.hpp"
 #include "scree/detect/euclidean_clusters.hpp"
 #include "scree/detect/ground_surface.hpp"
 #include "scree/detect/overhangs.hpp"
 #include "scree/detect/sloped_cloud.hpp"
-#include "scree/detect/solidity.hpp"
 #include "scree/detect/supervoxels.hpp"
 #include "scree/detect/surroundings.hpp"
 #include "scree/detect/voxel_grid.hpp"
@@ -40,7 +40,7 @@ private:
   PointCloud points_;
   SlopedCloud sloped_;
   GroundSurface surface_;
-  Solidity solidity_;
+  BeamGrid beam_grid_;
   EdgePoints candidates_, kept_, split_;
   Supervoxels supervoxels_;
   EuclideanClusters euclidean_;

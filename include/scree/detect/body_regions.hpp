@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <span>
 
+#include "scree/detect/beam_grid.hpp"
 #include "scree/detect/edge_points.hpp"
 #include "scree/detect/ground_surface.hpp"
 #include "scree/detect/key_sort.hpp"
-#include "scree/detect/solidity.hpp"
 
 namespace scree {
 
@@ -29,7 +29,7 @@ public:
   /// @param bodies above (height > 0) or below the surface; all other points of the cloud that
   /// `surface` was built from count as seen ground
   /// @param solidity on the same raster
-  void label(const EdgePoints& bodies, const GroundSurface& surface, const Solidity& solidity,
+  void label(const EdgePoints& bodies, const GroundSurface& surface, const BeamGrid& solidity,
              const BodyRegionSettings& settings);
 
   /// Region of each point, numbered from 0.
@@ -42,7 +42,7 @@ private:
   enum class Side : std::uint8_t { above, below };
 
   void mark(const EdgePoints& bodies, Side side, const GroundSurface& surface,
-            const Solidity& solidity);
+            const BeamGrid& solidity);
   void grow(bool diagonally, float share);
   void join(float saddle);
   void number(const EdgePoints& bodies, Side side, const GroundSurface& surface);

@@ -26,18 +26,18 @@ enum Feature : std::size_t {
   roughness,      ///< of the ground up to 0.6 m around: mean distance of its cells from the surface
   solid_share,    ///< of its cells: that stop at least 70 % of the beams
   top_solidity,   ///< of the beams to its cells that reach half its height: the share that ended
-  core_solidity,  ///< upper quartile of Solidity::around() over its cells
+  core_solidity,  ///< upper quartile of BeamGrid::ended_share_around() over its cells
   beam_count,     ///< beams that ended in it
   steepest,       ///< of its cells: upper tenth of the steepest slope in each, metres per metre
   edge_height,    ///< median height or depth of its cells next to seen ground, metres
   edge_share,     ///< of those cells: that reach half its height
   range_scatter,  ///< median over its cells: mean of the beams that ended there, metres
-  loose_around,   ///< of the cells up to 0.3 m around its box: with something loose, see Solidity
+  loose_around,   ///< of the cells up to 0.3 m around its box: with something loose, see BeamGrid
   over_loose,     ///< its highest point above the highest in those, metres; above the ground: none
   least_scatter,  ///< lower quartile of what range_scatter is the median of, metres
-  firm_cells,     ///< share of its cells where that is below Solidity::kFirmScatter
+  firm_cells,     ///< share of its cells where that is below BeamGrid::kFirmScatter
   firm_beams,     ///< of the beams that ended in it: share in those cells
-  solid_beams,    ///< of the same: share that Solidity::solid() counts
+  solid_beams,    ///< of the same: share that BeamGrid::solid() counts
   solid_core,     ///< most of these in one of its cells
   all_beams,      ///< beams that ended in its cells at any height, so in a hole, too
   all_scatter,    ///< mean over these, metres

@@ -6,13 +6,13 @@
 #include "scree/config/settings.hpp"
 #include "scree/core/beam_count.hpp"
 #include "scree/core/stage_times.hpp"
+#include "scree/detect/beam_grid.hpp"
 #include "scree/detect/body_regions.hpp"
 #include "scree/detect/clusters.hpp"
 #include "scree/detect/edge_points.hpp"
 #include "scree/detect/euclidean_clusters.hpp"
 #include "scree/detect/ground_surface.hpp"
 #include "scree/detect/sloped_cloud.hpp"
-#include "scree/detect/solidity.hpp"
 #include "scree/detect/stage_counts.hpp"
 #include "scree/detect/surroundings.hpp"
 
@@ -56,7 +56,7 @@ private:
 
   SlopedCloud sloped_;
   GroundSurface surface_;
-  Solidity solidity_;
+  BeamGrid beam_grid_;
   FixedVector<float> height_;                // above the surface, of each sorted point
   FixedVector<std::uint8_t> is_off_ground_;  // for each of them
   EdgePoints candidates_, kept_;

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <span>
 
+#include "scree/detect/beam_grid.hpp"
 #include "scree/detect/clusters.hpp"
 #include "scree/detect/ground_surface.hpp"
-#include "scree/detect/solidity.hpp"
 
 namespace scree {
 
@@ -30,15 +30,15 @@ public:
   /// Sets the features from box_length on.
   /// @param members of the cluster among the points given to build()
   void measure(Cluster& cluster, std::span<const std::uint32_t> members, const EdgePoints& edges,
-               const GroundSurface& surface, const Solidity& solidity);
+               const GroundSurface& surface, const BeamGrid& beams);
 
 private:
   enum Side : std::uint8_t { above = 1, below = 2 };
 
   std::size_t quarter_at(float x, float y, const GroundSurface& surface) const;
   bool is_amid_ground(float x, float y, const GroundSurface& surface) const;
-  void measure_solidity(Features& features, const Solidity& solidity);
-  void measure_scatter(Features& features, const Solidity& solidity);
+  void measure_solidity(Features& features, const BeamGrid& beams);
+  void measure_scatter(Features& features, const BeamGrid& beams);
   void measure_edge(Features& features, const GroundSurface& surface);
 
   FixedVector<std::uint8_t> sides_;

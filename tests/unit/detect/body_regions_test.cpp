@@ -58,7 +58,7 @@ protected:
   std::vector<BeamCount> beams_;
   EdgePoints bodies_{1 << 16};
   GroundSurface surface_{1 << 16, 1 << 16};
-  Solidity solidity_{1 << 16};
+  BeamGrid solidity_{1 << 16};
   BodyRegions regions_{1 << 16, 1 << 16};
 };
 

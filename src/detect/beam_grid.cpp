@@ -1,4 +1,4 @@
-#include "scree/detect/solidity.hpp"
+#include "scree/detect/beam_grid.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -12,19 +12,19 @@ namespace {
 bool is_solid(const BeamCount& beams) {
   constexpr float kShare = 0.9F;
   return beams.ended >= kShare * (beams.ended + beams.passed) &&
-         beams.scatter < Solidity::kFirmScatter * beams.ended;
+         beams.scatter < BeamGrid::kFirmScatter * beams.ended;
 }
 
 }  // namespace
 
-void Solidity::build(PointView cloud, std::span<const BeamCount> beams,
+void BeamGrid::build(PointView cloud, std::span<const BeamCount> beams,
                      const GroundSurface& surface, float lowest, float highest) {
   assert(beams.empty() || beams.size() == cloud.size());
   const std::size_t cells = surface.columns() * surface.rows();
   ended_.assign(cells, 0);
   passed_.assign(cells, 0);
   scatter_.assign(cells, 0);
-  around_.assign(cells, 1);
+  ended_share_around_.assign(cells, 1);
   solid_.assign(cells, 0);
   highest_.assign(cells, 0);
   all_ended_.assign(cells, 0);
@@ -46,13 +46,16 @@ void Solidity::build(PointView cloud, std::span<const BeamCount> beams,
     highest_[cell] = std::max(highest_[cell], height);
   }
   if (beams.empty()) return;
-  spread(surface.columns());
-  settle(surface.columns());
+  look_around(surface.columns());
+  absorb_small_patches(surface.columns());
 }
 
-void Solidity::spread(std::size_t columns) {
-  constexpr std::size_t kReach = 2;
-  constexpr float kLooseShare = 0.12F, kLooseBase = 0.05F;  // of the height above metres below it
+/// Sets what is known of a cell by its neighbours, too.
+void BeamGrid::look_around(std::size_t columns) {
+  constexpr std::size_t kReach = 2;  // cells
+  // Loose is what scatters more than this share of its height. Heights are taken from metres below
+  // the surface, so that the sensor's noise on low stones is not enough.
+  constexpr float kLooseShare = 0.12F, kLooseBase = 0.05F;
   const std::size_t margin = kReach * columns + kReach;
   const auto sum = [columns](const FixedVector<float>& of, std::size_t cell, std::size_t reach) {
     float total = 0;
@@ -64,7 +67,7 @@ void Solidity::spread(std::size_t columns) {
   };
   for (std::size_t cell = margin; cell + margin < ended_.size(); ++cell) {
     if (ended_[cell] == 0) continue;
-    around_[cell] = share(sum(ended_, cell, kReach), sum(passed_, cell, kReach));
+    ended_share_around_[cell] = share(sum(ended_, cell, kReach), sum(passed_, cell, kReach));
     // Blades scatter the ranges as far as a tuft is deep, a rock by the sensor's noise.
     const float scatter = sum(scatter_, cell, 1) / sum(ended_, cell, 1);
     loose_[cell] = scatter > kLooseShare * (highest_[cell] + kLooseBase) ? 1 : 0;
@@ -72,23 +75,23 @@ void Solidity::spread(std::size_t columns) {
 }
 
 /// A few firm cells beside loose ones are as loose as those, and the other way round.
-void Solidity::settle(std::size_t columns) {
-  constexpr std::size_t kFewest = 6;
+void BeamGrid::absorb_small_patches(std::size_t columns) {
+  constexpr std::size_t kFewest = 6;  // cells that are a patch of their own
   for (const std::uint8_t kind : {kFirm, kLoose}) {
     seen_.assign(loose_.size(), 0);
     for (std::size_t cell = 0; cell < loose_.size(); ++cell) {
       if (ended_[cell] == 0 || loose_[cell] != kind || seen_[cell] != 0) continue;
-      const bool is_alone = gather(cell, columns);
+      const bool is_alone = collect_patch(cell, columns);
       if (is_alone || patch_.size() >= kFewest) continue;
       for (const std::uint32_t member : patch_) loose_[member] = kind == kFirm ? kLoose : kFirm;
     }
   }
 }
 
-/// The cells of one kind that hang together with one, into `patch_`. The raster's outermost cells
-/// hold no point.
-/// @return whether none of the other kind touches them
-bool Solidity::gather(std::size_t start, std::size_t columns) {
+/// Collects in `patch_` the cells of one kind that hang together with `start`. The raster's
+/// outermost cells hold no point.
+/// @return whether no cell of the other kind touches them
+bool BeamGrid::collect_patch(std::size_t start, std::size_t columns) {
   bool is_alone = true;
   patch_.clear();
   const auto take = [&](std::size_t cell) {

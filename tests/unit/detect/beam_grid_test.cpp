@@ -1,4 +1,4 @@
-#include "scree/detect/solidity.hpp"
+#include "scree/detect/beam_grid.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,9 +16,9 @@ constexpr std::size_t kPoints = 20'000, kCells = 1 << 12;
 constexpr float kCell = 0.1F, kLowest = 0.06F, kHighest = 2;
 
 /// Level ground with a rock and a branch high above it, and beams of any number at each point.
-class SolidityTest : public testing::Test {
+class BeamGridTest : public testing::Test {
 protected:
-  SolidityTest() {
+  BeamGridTest() {
     std::mt19937 random(7);
     std::uniform_real_distribution<float> place(-2, 2);
     std::uniform_int_distribution<int> count(0, 50);
@@ -44,11 +44,11 @@ protected:
   PointCloud cloud_{kPoints};
   std::vector<BeamCount> beams_;
   GroundSurface surface_{kPoints, kCells};
-  Solidity solidity_{kCells};
+  BeamGrid beam_grid_{kCells};
 };
 
-TEST_F(SolidityTest, CountsWhatStandsOnTheGroundCellByCell) {
-  solidity_.build(cloud_, beams_, surface_, kLowest, kHighest);
+TEST_F(BeamGridTest, CountsWhatStandsOnTheGroundCellByCell) {
+  beam_grid_.build(cloud_, beams_, surface_, kLowest, kHighest);
   std::vector<float> ended(cells()), passed(cells()), scatter(cells());
   for (std::size_t i = 0; i < cloud_.size(); ++i) {
     if (cloud_.z[i] != 0.3F) continue;
@@ -58,11 +58,11 @@ TEST_F(SolidityTest, CountsWhatStandsOnTheGroundCellByCell) {
   }
   int counted = 0;
   for (std::size_t cell = 0; cell < cells(); ++cell) {
-    ASSERT_EQ(solidity_.ended(cell), ended[cell]);
-    ASSERT_EQ(solidity_.passed(cell), passed[cell]);
-    ASSERT_EQ(solidity_.scatter(cell), scatter[cell]);
+    ASSERT_EQ(beam_grid_.ended(cell), ended[cell]);
+    ASSERT_EQ(beam_grid_.passed(cell), passed[cell]);
+    ASSERT_EQ(beam_grid_.scatter(cell), scatter[cell]);
     if (ended[cell] == 0) {
-      ASSERT_EQ(solidity_.around(cell), 1) << "nothing stands there";
+      ASSERT_EQ(beam_grid_.ended_share_around(cell), 1) << "nothing stands there";
       continue;
     }
     ++counted;
@@ -75,80 +75,81 @@ TEST_F(SolidityTest, CountsWhatStandsOnTheGroundCellByCell) {
       near_ended += ended[other];
       near_passed += passed[other];
     }
-    ASSERT_FLOAT_EQ(solidity_.around(cell), (near_ended + 1) / (near_ended + near_passed + 1));
+    ASSERT_FLOAT_EQ(beam_grid_.ended_share_around(cell),
+                    (near_ended + 1) / (near_ended + near_passed + 1));
   }
   EXPECT_GT(counted, 60) << "cells of the rock";
 }
 
-TEST_F(SolidityTest, CountsTheBeamsOfSolidPointsAndThoseAtAnyHeight) {
+TEST_F(BeamGridTest, CountsTheBeamsOfSolidPointsAndThoseAtAnyHeight) {
   const auto look_at = [&](BeamCount standing) {
     beams_.clear();
     for (std::size_t i = 0; i < cloud_.size(); ++i) {
       const float z = cloud_.z[i];
       beams_.push_back(z == 0.3F ? standing : z < 1 ? BeamCount{10, 0, 0.5F} : BeamCount{7, 0, 7});
     }
-    solidity_.build(cloud_, beams_, surface_, kLowest, kHighest);
-    return solidity_.solid(middle());
+    beam_grid_.build(cloud_, beams_, surface_, kLowest, kHighest);
+    return beam_grid_.solid(middle());
   };
   EXPECT_GT(look_at({100, 5, 1}), 0);
-  EXPECT_EQ(solidity_.solid(middle()), solidity_.ended(middle()));
+  EXPECT_EQ(beam_grid_.solid(middle()), beam_grid_.ended(middle()));
   EXPECT_EQ(look_at({100, 20, 1}), 0) << "beams went on";
   EXPECT_EQ(look_at({100, 0, 3}), 0) << "ranges scatter";
-  EXPECT_EQ(solidity_.all_ended(middle()), solidity_.ended(middle()));
-  EXPECT_EQ(solidity_.all_scatter(middle()), solidity_.scatter(middle()));
+  EXPECT_EQ(beam_grid_.all_ended(middle()), beam_grid_.ended(middle()));
+  EXPECT_EQ(beam_grid_.all_scatter(middle()), beam_grid_.scatter(middle()));
 
   const std::size_t ground = surface_.cell_at(1, 1), branch = surface_.cell_at(1.8F, 1.8F);
-  EXPECT_GT(solidity_.all_ended(ground), 0);
-  EXPECT_FLOAT_EQ(solidity_.all_scatter(ground) / solidity_.all_ended(ground), 0.05F);
-  EXPECT_EQ(solidity_.ended(ground), 0);
-  EXPECT_EQ(solidity_.all_ended(branch), 0) << "the robot passes under it";
+  EXPECT_GT(beam_grid_.all_ended(ground), 0);
+  EXPECT_FLOAT_EQ(beam_grid_.all_scatter(ground) / beam_grid_.all_ended(ground), 0.05F);
+  EXPECT_EQ(beam_grid_.ended(ground), 0);
+  EXPECT_EQ(beam_grid_.all_ended(branch), 0) << "the robot passes under it";
 }
 
-TEST_F(SolidityTest, WithoutBeamsAllIsSolid) {
-  solidity_.build(cloud_, beams_, surface_, kLowest, kHighest);
-  EXPECT_LT(solidity_.around(middle()), 0.6);
-  solidity_.build(cloud_, {}, surface_, kLowest, kHighest);
-  EXPECT_EQ(solidity_.around(middle()), 1);
-  EXPECT_EQ(solidity_.of(middle()), 1);
-  EXPECT_EQ(solidity_.ended(middle()), 0);
-  EXPECT_EQ(solidity_.all_ended(middle()), 0);
-  EXPECT_EQ(solidity_.solid(middle()), 0);
+TEST_F(BeamGridTest, WithoutBeamsAllIsSolid) {
+  beam_grid_.build(cloud_, beams_, surface_, kLowest, kHighest);
+  EXPECT_LT(beam_grid_.ended_share_around(middle()), 0.6);
+  beam_grid_.build(cloud_, {}, surface_, kLowest, kHighest);
+  EXPECT_EQ(beam_grid_.ended_share_around(middle()), 1);
+  EXPECT_EQ(beam_grid_.ended_share(middle()), 1);
+  EXPECT_EQ(beam_grid_.ended(middle()), 0);
+  EXPECT_EQ(beam_grid_.all_ended(middle()), 0);
+  EXPECT_EQ(beam_grid_.solid(middle()), 0);
 }
 
-TEST_F(SolidityTest, AllIsStoppedWhereHardlyABeamWentOn) {
+TEST_F(BeamGridTest, AllIsStoppedWhereHardlyABeamWentOn) {
   const auto stops_all = [&](BeamCount each) {
     beams_.assign(cloud_.size(), each);
-    solidity_.build(cloud_, beams_, surface_, kLowest, kHighest);
-    return solidity_.stops_all(middle());
+    beam_grid_.build(cloud_, beams_, surface_, kLowest, kHighest);
+    return beam_grid_.stops_all(middle());
   };
   EXPECT_TRUE(stops_all({100, 0}));
   EXPECT_TRUE(stops_all({100, 3}));
   EXPECT_FALSE(stops_all({100, 10})) << "a dense tuft";
   EXPECT_FALSE(stops_all({0, 0})) << "no beam came to it";
-  EXPECT_FALSE(solidity_.stops_all(surface_.cell_at(1, 1))) << "nothing stands there";
+  EXPECT_FALSE(beam_grid_.stops_all(surface_.cell_at(1, 1))) << "nothing stands there";
 }
 
-TEST_F(SolidityTest, IsLooseWhereRangesScatterMuchForItsHeight) {
+TEST_F(BeamGridTest, IsLooseWhereRangesScatterMuchForItsHeight) {
   const auto is_loose = [&](float scatter, float height) {
     beams_.clear();
     for (std::size_t i = 0; i < cloud_.size(); ++i) {
       if (cloud_.z[i] > 0 && cloud_.z[i] < 2) cloud_.z[i] = height;
       beams_.push_back({100, 0, 100 * scatter});
     }
-    solidity_.build(cloud_, beams_, surface_, kLowest, kHighest);
-    EXPECT_NEAR(solidity_.highest(middle()), height, 1e-3);
-    return solidity_.is_loose(middle());
+    beam_grid_.build(cloud_, beams_, surface_, kLowest, kHighest);
+    EXPECT_NEAR(beam_grid_.highest(middle()), height, 1e-3);
+    return beam_grid_.is_loose(middle());
   };
   EXPECT_FALSE(is_loose(0.01F, 0.1F)) << "a stone, seen with 2 cm of noise";
   EXPECT_TRUE(is_loose(0.04F, 0.2F)) << "grass";
   EXPECT_FALSE(is_loose(0.04F, 0.8F)) << "the edge of a post";
-  EXPECT_FALSE(solidity_.is_loose(surface_.cell_at(1, 1))) << "nothing stands there";
-  solidity_.build(cloud_, {}, surface_, kLowest, kHighest);
-  EXPECT_FALSE(solidity_.is_loose(middle())) << "nothing is known of the beams";
-  EXPECT_EQ(solidity_.highest(middle()), 0);
+  EXPECT_FALSE(beam_grid_.is_loose(surface_.cell_at(1, 1))) << "nothing stands there";
+  beam_grid_.build(cloud_, {}, surface_, kLowest, kHighest);
+  EXPECT_FALSE(beam_grid_.is_loose(middle())) << "nothing is known of the beams";
+  EXPECT_EQ(beam_grid_.highest(middle()), 0);
 }
 
-TEST_F(SolidityTest, AFewCellsAreAsLooseAsThoseAroundThem) {
+TEST_F(BeamGridTest, AFewCellsAreAsLooseAsThoseAroundThem) {
   // Of the cell that lies so many columns and rows from the middle one.
   const auto cell_at = [&](int column, int row) {
     return middle() + static_cast<std::size_t>(row * static_cast<int>(surface_.columns()) + column);
@@ -164,8 +165,8 @@ TEST_F(SolidityTest, AFewCellsAreAsLooseAsThoseAroundThem) {
     for (std::size_t i = 0; i < cloud_.size(); ++i) {
       beams_.push_back({100, 0, 100 * scatter[surface_.cell_at(cloud_.x[i], cloud_.y[i])]});
     }
-    solidity_.build(cloud_, beams_, surface_, kLowest, kHighest);
-    return solidity_.is_loose(middle());
+    beam_grid_.build(cloud_, beams_, surface_, kLowest, kHighest);
+    return beam_grid_.is_loose(middle());
   };
   const auto is_within = [](int reach) {
     return [reach](int x, int y) { return std::max(std::abs(x), std::abs(y)) <= reach; };
@@ -176,22 +177,22 @@ TEST_F(SolidityTest, AFewCellsAreAsLooseAsThoseAroundThem) {
   EXPECT_FALSE(look_at(0.1F, 0, is_within(2))) << "a stone in a tuft";
 }
 
-TEST_F(SolidityTest, AFewCellsThatStandAloneStayAsTheyAre) {
+TEST_F(BeamGridTest, AFewCellsThatStandAloneStayAsTheyAre) {
   for (std::size_t i = 0; i < cloud_.size(); ++i) {
     if (surface_.cell_at(cloud_.x[i], cloud_.y[i]) != middle()) cloud_.z[i] = 0;
   }
   for (const float scatter : {0.01F, 0.1F}) {
     beams_.assign(cloud_.size(), {100, 0, 100 * scatter});
-    solidity_.build(cloud_, beams_, surface_, kLowest, kHighest);
-    EXPECT_EQ(solidity_.is_loose(middle()), scatter > 0.05F);
+    beam_grid_.build(cloud_, beams_, surface_, kLowest, kHighest);
+    EXPECT_EQ(beam_grid_.is_loose(middle()), scatter > 0.05F);
   }
 }
 
-TEST_F(SolidityTest, TakesPointsThatAreNoNumbers) {
-  solidity_.build(cloud_, beams_, surface_, kLowest, kHighest);
+TEST_F(BeamGridTest, TakesPointsThatAreNoNumbers) {
+  beam_grid_.build(cloud_, beams_, surface_, kLowest, kHighest);
   const auto total = [&] {
     float sum = 0;
-    for (std::size_t cell = 0; cell < cells(); ++cell) sum += solidity_.ended(cell);
+    for (std::size_t cell = 0; cell < cells(); ++cell) sum += beam_grid_.ended(cell);
     return sum;
   };
   const float before = total();
@@ -204,7 +205,7 @@ TEST_F(SolidityTest, TakesPointsThatAreNoNumbers) {
   cloud_.x[rock[0]] = kNan;
   cloud_.y[rock[1]] = -kInfinity;
   cloud_.z[rock[2]] = kNan;
-  solidity_.build(cloud_, beams_, surface_, kLowest, kHighest);
+  beam_grid_.build(cloud_, beams_, surface_, kLowest, kHighest);
   EXPECT_EQ(total(), before - static_cast<float>(beams_[rock[0]].ended + beams_[rock[1]].ended +
                                                  beams_[rock[2]].ended));
 }

@@ -12,19 +12,21 @@
 
 namespace scree {
 
-/// Of the beams that came to what stands above the ground the share that ended there, and how much
-/// the ranges of those scatter, on the raster of the ground's surface. Rocks stop them all; between
-/// blades of grass most go on, and the others end as deep in it as they happen to.
-class Solidity {
+/// Counts, on the raster of the ground's surface, the beams that came to what stands above the
+/// ground: how many ended there, how many went on, and how much the ranges of the former scatter.
+/// A rock stops every beam. Between blades of grass most go on, and the others end as deep in it as
+/// they happen to.
+class BeamGrid {
 public:
-  /// Ranges on a rock scatter less than this, metres: by the sensor's noise.
+  /// Ranges on a rock scatter less than this, metres: by the sensor's noise, which its data sheet
+  /// puts at 3 cm at most.
   static constexpr float kFirmScatter = 0.02F;
 
-  explicit Solidity(std::size_t max_cells)
+  explicit BeamGrid(std::size_t max_cells)
       : ended_(max_cells),
         passed_(max_cells),
         scatter_(max_cells),
-        around_(max_cells),
+        ended_share_around_(max_cells),
         solid_(max_cells),
         highest_(max_cells),
         all_ended_(max_cells),
@@ -38,27 +40,32 @@ public:
   void build(PointView cloud, std::span<const BeamCount> beams, const GroundSurface& surface,
              float lowest, float highest);
 
-  // Of a cell of the raster; without any beam all is solid.
+  // The arguments are cells of the raster.
+  /// Beams that ended on what stands in the cell.
   float ended(std::size_t cell) const { return ended_[cell]; }
+  /// Beams that went through what stands in it, and ended farther on.
   float passed(std::size_t cell) const { return passed_[cell]; }
+  /// Sum of the scatter of the ranges of those that ended, metres.
   float scatter(std::size_t cell) const { return scatter_[cell]; }
   /// Beams that ended in points which stop at least nine of ten and hardly scatter them.
   float solid(std::size_t cell) const { return solid_[cell]; }
-  /// Of the points at any height up to the highest.
+  /// Beams that ended at any height up to the highest, so in holes and on the ground, too.
   float all_ended(std::size_t cell) const { return all_ended_[cell]; }
+  /// Sum of the scatter of these, metres.
   float all_scatter(std::size_t cell) const { return all_scatter_[cell]; }
-  float of(std::size_t cell) const { return share(ended_[cell], passed_[cell]); }
+  /// Share of the beams that ended; 1 without any.
+  float ended_share(std::size_t cell) const { return share(ended_[cell], passed_[cell]); }
+  /// The same share over the cell and those up to two cells away.
+  float ended_share_around(std::size_t cell) const { return ended_share_around_[cell]; }
   /// Whether beams ended on what stands in it, and hardly any went on.
-  bool stops_all(std::size_t cell) const { return ended_[cell] > 0 && of(cell) >= kAll; }
-  /// Of the cells up to two cells away, too.
-  float around(std::size_t cell) const { return around_[cell]; }
-  /// Of the points that were counted, metres above the surface; 0 without any.
+  bool stops_all(std::size_t cell) const { return ended_[cell] > 0 && ended_share(cell) >= kAll; }
+  /// Height above the surface of the highest point that was counted, metres; 0 without any.
   float highest(std::size_t cell) const { return highest_[cell]; }
   /// Whether the ranges scatter, there and in the cells next to it, as they do among blades. At
   /// least six cells are so together, unless they stand alone.
   bool is_loose(std::size_t cell) const { return loose_[cell] != 0; }
   bool has_loose() const { return std::ranges::find(loose_, 1) != loose_.end(); }
-  /// Of all cells, not 0: is_loose().
+  /// is_loose() of all cells: not 0.
   std::span<const std::uint8_t> loose() const { return {loose_.data(), loose_.size()}; }
 
   /// One more beam ended than was counted: few beams say little.
@@ -69,11 +76,12 @@ private:
   /// Voxels at an edge count beams that went past it, too.
   static constexpr float kAll = 0.94F;
 
-  void spread(std::size_t columns);
-  void settle(std::size_t columns);
-  bool gather(std::size_t start, std::size_t columns);
+  void look_around(std::size_t columns);
+  void absorb_small_patches(std::size_t columns);
+  bool collect_patch(std::size_t start, std::size_t columns);
 
-  FixedVector<float> ended_, passed_, scatter_, around_, solid_, highest_, all_ended_, all_scatter_;
+  FixedVector<float> ended_, passed_, scatter_, ended_share_around_, solid_, highest_;
+  FixedVector<float> all_ended_, all_scatter_;
   FixedVector<std::uint8_t> loose_, seen_;
   FixedVector<std::uint32_t> patch_;  // cells that hang together
 };
