@@ -35,7 +35,7 @@ SurfaceMethod::SurfaceMethod(const SurfaceSettings& settings, double clearance,
       kept_(limits.candidates),
       euclidean_(limits.candidates),
       clusters_(limits.candidates),
-      surroundings_(limits.ground_cells) {
+      context_(limits.ground_cells) {
   if (settings.clustering == SurfaceClustering::regions) {
     regions_.emplace(limits.candidates, limits.ground_cells);
   } else {
@@ -137,12 +137,12 @@ void SurfaceMethod::cluster(StageCounts& counts) {
 }
 
 void SurfaceMethod::measure_clusters(const PointCloud& points) {
-  surroundings_.build(points, kept_, surface_);
+  context_.build(points, kept_, surface_);
   for (Cluster& cluster : clusters_.all()) {
     const auto members = clusters_.members(cluster);
     cluster.ground = surface_.height(cluster.box.center_x, cluster.box.center_y);
     cluster.features = measure(kept_, members);
-    surroundings_.measure(cluster, members, kept_, surface_, beam_grid_);
+    context_.measure(cluster, members, kept_, surface_, beam_grid_);
   }
 }
 

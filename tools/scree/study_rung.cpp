@@ -30,7 +30,7 @@ SurfaceRung::SurfaceRung(const DetectSettings& settings, const DetectorLimits& l
       euclidean_(limits.candidates),
       labels_(limits.candidates),
       clusters_(limits.candidates),
-      surroundings_(limits.ground_cells) {}
+      context_(limits.ground_cells) {}
 
 ClusteredPoints SurfaceRung::find(PointView cloud) {
   take_in(cloud);
@@ -98,12 +98,12 @@ void SurfaceRung::cluster() {
 }
 
 void SurfaceRung::measure_clusters() {
-  surroundings_.build(points_, kept_, surface_);
+  context_.build(points_, kept_, surface_);
   for (Cluster& cluster : clusters_.all()) {
     const auto members = clusters_.members(cluster);
     cluster.ground = surface_.height(cluster.box.center_x, cluster.box.center_y);
     cluster.features = measure(kept_, members);
-    surroundings_.measure(cluster, members, kept_, surface_, beam_grid_);
+    context_.measure(cluster, members, kept_, surface_, beam_grid_);
   }
 }
 

@@ -3,13 +3,13 @@
 #include "scree/config/settings.hpp"
 #include "scree/core/point_cloud.hpp"
 #include "scree/detect/beam_grid.hpp"
+#include "scree/detect/cluster_context.hpp"
 #include "scree/detect/clusters.hpp"
 #include "scree/detect/euclidean_clusters.hpp"
 #include "scree/detect/ground_surface.hpp"
 #include "scree/detect/overhangs.hpp"
 #include "scree/detect/sloped_cloud.hpp"
 #include "scree/detect/supervoxels.hpp"
-#include "scree/detect/surroundings.hpp"
 #include "scree/detect/voxel_grid.hpp"
 
 namespace scree::cli {
@@ -46,7 +46,7 @@ private:
   EuclideanClusters euclidean_;
   FixedVector<std::uint32_t> labels_;
   Clusters clusters_;
-  Surroundings surroundings_;
+  ClusterContext context_;
 };
 
 }  // namespace scree::cli

@@ -8,13 +8,13 @@
 #include "scree/core/stage_times.hpp"
 #include "scree/detect/beam_grid.hpp"
 #include "scree/detect/body_regions.hpp"
+#include "scree/detect/cluster_context.hpp"
 #include "scree/detect/clusters.hpp"
 #include "scree/detect/edge_points.hpp"
 #include "scree/detect/euclidean_clusters.hpp"
 #include "scree/detect/ground_surface.hpp"
 #include "scree/detect/sloped_cloud.hpp"
 #include "scree/detect/stage_counts.hpp"
-#include "scree/detect/surroundings.hpp"
 
 namespace scree {
 
@@ -64,7 +64,7 @@ private:
   PointCloud split_;  // for Euclidean clustering
   std::optional<BodyRegions> regions_;
   Clusters clusters_;
-  Surroundings surroundings_;
+  ClusterContext context_;
 };
 
 }  // namespace scree

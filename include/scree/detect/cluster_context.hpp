@@ -9,11 +9,11 @@
 
 namespace scree {
 
-/// The features beyond the paper's five: what lies in and around a cluster on the raster of the
-/// ground's surface.
-class Surroundings {
+/// The context features of clusters, those beyond the paper's five: what lies in and around a
+/// cluster on the raster of the ground's surface.
+class ClusterContext {
 public:
-  explicit Surroundings(std::size_t max_cells)
+  explicit ClusterContext(std::size_t max_cells)
       : sides_(max_cells),
         visited_(max_cells),
         lowest_(max_cells),
@@ -37,16 +37,22 @@ private:
 
   std::size_t quarter_at(float x, float y, const GroundSurface& surface) const;
   bool is_amid_ground(float x, float y, const GroundSurface& surface) const;
+  void measure_points(Features& features, std::span<const std::uint32_t> members,
+                      const EdgePoints& edges, const GroundSurface& surface) const;
+  void collect_cells(Features& features, std::span<const std::uint32_t> members,
+                     const EdgePoints& edges, const GroundSurface& surface);
+  static void measure_around(Features& features, const OrientedBox& box,
+                             const GroundSurface& surface, const BeamGrid& beams);
   void measure_solidity(Features& features, const BeamGrid& beams);
   void measure_scatter(Features& features, const BeamGrid& beams);
   void measure_edge(Features& features, const GroundSurface& surface);
 
   FixedVector<std::uint8_t> sides_;
   FixedVector<std::uint32_t> visited_;     // number of the last cluster that counted the cell
-  FixedVector<float> lowest_, highest_;    // of that cluster's heights in it
-  FixedVector<float> steepest_;            // of its slopes in it
-  FixedVector<std::uint32_t> cells_;       // of that cluster
-  FixedVector<float> values_;              // scratch: of these
+  FixedVector<float> lowest_, highest_;    // heights of that cluster in it
+  FixedVector<float> steepest_;            // its steepest slope in it
+  FixedVector<std::uint32_t> cells_;       // those of that cluster
+  FixedVector<float> values_;              // scratch: a value of each of these
   FixedVector<std::uint8_t> ground_seen_;  // in each quarter of a cell, row by row
   std::uint32_t number_ = 0;
 };

@@ -1,4 +1,4 @@
-#include "scree/detect/surroundings.hpp"
+#include "scree/detect/cluster_context.hpp"
 
 #include <gtest/gtest.h>
 
@@ -47,7 +47,7 @@ bool inside(float x, float y) {
   return std::abs(x) < 0.5F && std::abs(y) < 0.3F;
 }
 
-TEST(Surroundings, LightPassesThroughATuftAndNotThroughARock) {
+TEST(ClusterContext, LightPassesThroughATuftAndNotThroughARock) {
   const Features rock =
       features_of(ground_with([](float x, float y, float) { return inside(x, y) ? 0.4F : 0.0F; }));
   const Features tuft = features_of(ground_with([](float x, float y, float chance) {
@@ -60,7 +60,7 @@ TEST(Surroundings, LightPassesThroughATuftAndNotThroughARock) {
   EXPECT_GT(tuft[cell_points], 1.3 * rock[cell_points]);
 }
 
-TEST(Surroundings, MeasuresTheShareOfTheBeamsThatEnded) {
+TEST(ClusterContext, MeasuresTheShareOfTheBeamsThatEnded) {
   const PointCloud cloud = ground_with([](float x, float y, float) {
     if (!inside(x, y)) return 0.0F;
     return x < 0 ? 0.5F : 0.2F;
@@ -101,7 +101,7 @@ TEST(Surroundings, MeasuresTheShareOfTheBeamsThatEnded) {
   }
 }
 
-TEST(Surroundings, CountsTheBeamsInAHoleAndTheGrassBesideIt) {
+TEST(ClusterContext, CountsTheBeamsInAHoleAndTheGrassBesideIt) {
   const PointCloud cloud =
       ground_with([](float x, float y, float) { return inside(x, y) ? -0.4F : 0.0F; });
   std::vector<BeamCount> beams;
@@ -117,7 +117,7 @@ TEST(Surroundings, CountsTheBeamsInAHoleAndTheGrassBesideIt) {
   EXPECT_NEAR(hole[ground_scatter], 0.05, 0.002);
 }
 
-TEST(Surroundings, KnowsTheGrassAround) {
+TEST(ClusterContext, KnowsTheGrassAround) {
   // A rock 0.4 m high between two strips of grass, 0.2 m high.
   const auto is_grass = [](float x, float y) {
     return std::abs(x) > 0.72F && std::abs(x) < 0.95F && std::abs(y) < 0.3F;
@@ -140,7 +140,7 @@ TEST(Surroundings, KnowsTheGrassAround) {
   EXPECT_EQ(features_of(cloud)[loose_around], 0) << "nothing is known without beams";
 }
 
-TEST(Surroundings, GroundBelowItsEdgeMakesARockNoLessSteep) {
+TEST(ClusterContext, GroundBelowItsEdgeMakesARockNoLessSteep) {
   // As wide as a table on its foot: half the points within its outline lie on the ground.
   const auto table = [](float x, float y, float chance) {
     return inside(x, y) && chance < 0.5F ? 0.4F : 0.0F;
@@ -164,7 +164,7 @@ TEST(Surroundings, GroundBelowItsEdgeMakesARockNoLessSteep) {
       << "nothing is known without beams";
 }
 
-TEST(Surroundings, ARocksEdgeIsHighAndAMoundsIsLow) {
+TEST(ClusterContext, ARocksEdgeIsHighAndAMoundsIsLow) {
   const Features slab =
       features_of(ground_with([](float x, float y, float) { return inside(x, y) ? 0.2F : 0.0F; }));
   EXPECT_NEAR(slab[edge_height], 0.2, 0.01);
@@ -185,7 +185,7 @@ TEST(Surroundings, ARocksEdgeIsHighAndAMoundsIsLow) {
   EXPECT_GT(pit[edge_share], 0.95);
 }
 
-TEST(Surroundings, MeasuresHowUnevenTheGroundAroundIs) {
+TEST(ClusterContext, MeasuresHowUnevenTheGroundAroundIs) {
   const auto rock_on = [](float unevenness) {
     return features_of(ground_with([=](float x, float y, float chance) {
       return inside(x, y) ? 0.4F : unevenness * (chance - 0.5F);
@@ -197,7 +197,7 @@ TEST(Surroundings, MeasuresHowUnevenTheGroundAroundIs) {
   EXPECT_NEAR(rock_on(0.1F)[roughness] / uneven, 2, 0.4);
 }
 
-TEST(Surroundings, MeasuresTheBoxAndTheSlope) {
+TEST(ClusterContext, MeasuresTheBoxAndTheSlope) {
   const Features rock =
       features_of(ground_with([](float x, float y, float) { return inside(x, y) ? 0.4F : 0.0F; }));
   EXPECT_NEAR(rock[box_length], 1.0, 0.1);
@@ -209,7 +209,7 @@ TEST(Surroundings, MeasuresTheBoxAndTheSlope) {
   EXPECT_EQ(rock[rim_share], 0);
 }
 
-TEST(Surroundings, SeesWhatWasNotSeen) {
+TEST(ClusterContext, SeesWhatWasNotSeen) {
   const Features pit = features_of(ground_with([](float x, float y, float) {
     if (!inside(x, y)) return 0.0F;
     return x > 0 && y > 0 ? NAN : -0.5F;
@@ -218,7 +218,7 @@ TEST(Surroundings, SeesWhatWasNotSeen) {
   EXPECT_NEAR(pit[unseen_share], 0.25, 0.1);
 }
 
-TEST(Surroundings, ARimBordersOnItsHole) {
+TEST(ClusterContext, ARimBordersOnItsHole) {
   const Features rim = features_of(ground_with([](float x, float y, float) {
     const float radius = std::hypot(x, y);
     if (radius < 0.3F) return -0.3F;

@@ -1,4 +1,4 @@
-#include "scree/detect/surroundings.hpp"
+#include "scree/detect/cluster_context.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@ float half_height(const Features& features) {
   return std::max(features[max_height], -features[min_height]) / 2;
 }
 
-/// Whether a cell is `is`, or one up to `reach` cells from it.
+/// Whether `is` holds for a cell or one up to `reach` cells from it.
 template <class Is>
 bool has_near(std::size_t cell, std::size_t reach, const GroundSurface& surface, const Is& is) {
   const std::size_t columns = surface.columns(), rows = surface.rows();
@@ -27,10 +27,69 @@ bool has_near(std::size_t cell, std::size_t reach, const GroundSurface& surface,
   return false;
 }
 
+float slope_of(const EdgePoints& edges, std::size_t i) {
+  return std::hypot(edges.slope_x[i], edges.slope_y[i]);
+}
+
+// Metres around a cluster's box: its edge, and the ground it stands on.
+constexpr float kAround = 0.3F, kFurtherAround = 0.6F;
+
+/// Counts of cells in a cluster's box and around it, by what is known of the ground there.
+struct GroundAround {
+  float inside = 0, unseen = 0;      ///< cells of the box
+  float around = 0, ground = 0;      ///< cells up to kAround from it
+  float all_ground = 0, uneven = 0;  ///< ground up to kFurtherAround, and the sum of its roughness
+
+  void add(std::size_t cell, float distance, const GroundSurface& surface) {
+    if (distance <= 0) {
+      ++inside;
+      if (surface.points_in(cell) == 0) ++unseen;
+      return;
+    }
+    const bool is_ground = surface.is_ground(cell);
+    if (is_ground) {
+      ++all_ground;
+      uneven += surface.roughness(cell);
+    }
+    if (distance > kAround) return;
+    ++around;
+    if (is_ground) ++ground;
+  }
+
+  void set(Features& features) const {
+    features[unseen_share] = unseen / std::max(inside, 1.0F);
+    features[ground_share] = ground / std::max(around, 1.0F);
+    features[roughness] = uneven / std::max(all_ground, 1.0F);
+  }
+};
+
+/// Sums over the cells around a cluster's box of what beams met there.
+struct BeamsAround {
+  float ended = 0, scatter = 0;  ///< up to kFurtherAround from it
+  float around = 0, loose = 0;   ///< cells up to kAround from it
+  float loose_height = 0;        ///< of the highest of the loose ones, metres
+
+  void add(std::size_t cell, float distance, const BeamGrid& beams) {
+    ended += beams.all_ended(cell);
+    scatter += beams.all_scatter(cell);
+    if (distance > kAround) return;
+    ++around;
+    if (!beams.is_loose(cell)) return;
+    ++loose;
+    loose_height = std::max(loose_height, beams.highest(cell));
+  }
+
+  void set(Features& features) const {
+    features[loose_around] = loose / std::max(around, 1.0F);
+    features[over_loose] = features[max_height] - loose_height;
+    features[ground_scatter] = scatter / std::max(ended, 1.0F);
+  }
+};
+
 }  // namespace
 
-void Surroundings::build(PointView cloud, const EdgePoints& edges, const GroundSurface& surface) {
-  constexpr float kGroundTolerance = 0.05F;
+void ClusterContext::build(PointView cloud, const EdgePoints& edges, const GroundSurface& surface) {
+  constexpr float kGroundTolerance = 0.05F;  // metres
   ground_seen_.assign(4 * surface.columns() * surface.rows(), 0);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const float x = cloud.x[i], y = cloud.y[i];
@@ -49,14 +108,14 @@ void Surroundings::build(PointView cloud, const EdgePoints& edges, const GroundS
   }
 }
 
-std::size_t Surroundings::quarter_at(float x, float y, const GroundSurface& surface) const {
+std::size_t ClusterContext::quarter_at(float x, float y, const GroundSurface& surface) const {
   const float u = surface.column_of(x), v = surface.row_of(y);
   return static_cast<std::size_t>(2 * v) * 2 * surface.columns() + static_cast<std::size_t>(2 * u);
 }
 
 /// Whether the ground was seen in each of the four squares, two quarters wide, that lie diagonally
 /// around the place. Beside a wall it is seen on one side only.
-bool Surroundings::is_amid_ground(float x, float y, const GroundSurface& surface) const {
+bool ClusterContext::is_amid_ground(float x, float y, const GroundSurface& surface) const {
   const auto row = 2 * static_cast<std::ptrdiff_t>(surface.columns());
   const std::uint8_t* const middle = ground_seen_.begin() + quarter_at(x, y, surface);
   const auto seen = [&](std::ptrdiff_t right, std::ptrdiff_t up) {
@@ -66,20 +125,43 @@ bool Surroundings::is_amid_ground(float x, float y, const GroundSurface& surface
   return seen(1, 1) && seen(1, -1) && seen(-1, 1) && seen(-1, -1);
 }
 
-void Surroundings::measure(Cluster& cluster, std::span<const std::uint32_t> members,
-                           const EdgePoints& edges, const GroundSurface& surface,
-                           const BeamGrid& beams) {
+void ClusterContext::measure(Cluster& cluster, std::span<const std::uint32_t> members,
+                             const EdgePoints& edges, const GroundSurface& surface,
+                             const BeamGrid& beams) {
+  Features& features = cluster.features;
+  features[box_length] = cluster.box.length;
+  features[box_width] = cluster.box.width;
+  measure_points(features, members, edges, surface);
+  collect_cells(features, members, edges, surface);
+  measure_around(features, cluster.box, surface, beams);
+  measure_edge(features, surface);
+  measure_solidity(features, beams);
+  measure_scatter(features, beams);
+}
+
+void ClusterContext::measure_points(Features& features, std::span<const std::uint32_t> members,
+                                    const EdgePoints& edges, const GroundSurface& surface) const {
+  double slopes = 0;
+  float through = 0;
+  for (const std::uint32_t i : members) {
+    slopes += slope_of(edges, i);
+    if (is_amid_ground(edges.points.x[i], edges.points.y[i], surface)) ++through;
+  }
+  features[steepness] = static_cast<float>(slopes / static_cast<double>(members.size()));
+  features[through_share] = through / static_cast<float>(members.size());
+}
+
+/// Gathers the cluster's cells with the heights and slopes in them, for all that is measured of
+/// cells, and sets the features that come from these alone.
+void ClusterContext::collect_cells(Features& features, std::span<const std::uint32_t> members,
+                                   const EdgePoints& edges, const GroundSurface& surface) {
   constexpr std::size_t kRim = 2;  // cells
   ++number_;
   cells_.clear();
-  double slopes = 0;
-  float rim = 0, through = 0, spread = 0;
+  float rim = 0, spread = 0;
   for (const std::uint32_t i : members) {
-    const float slope = std::hypot(edges.slope_x[i], edges.slope_y[i]);
-    slopes += slope;
-    if (is_amid_ground(edges.points.x[i], edges.points.y[i], surface)) ++through;
     const std::size_t cell = surface.cell_at(edges.points.x[i], edges.points.y[i]);
-    const float height = edges.height[i];
+    const float height = edges.height[i], slope = slope_of(edges, i);
     if (std::exchange(visited_[cell], number_) == number_) {
       spread += std::max(lowest_[cell] - height, 0.0F) + std::max(height - highest_[cell], 0.0F);
       lowest_[cell] = std::min(lowest_[cell], height);
@@ -96,63 +178,38 @@ void Surroundings::measure(Cluster& cluster, std::span<const std::uint32_t> memb
     }
   }
   const auto cells = static_cast<float>(cells_.size());
-  constexpr float kAround = 0.3F, kFurtherAround = 0.6F;
-  float inside = 0, unseen = 0, around = 0, ground = 0, level_cells = 0, uneven = 0;
-  float loose = 0, highest_loose = 0, ended = 0, scatter = 0;
-  const OrientedBox& box = cluster.box;
-  const float reach = std::hypot(box.length, box.width) / 2 + kFurtherAround,
-              step = surface.cell_size();
+  features[rim_share] = rim / cells;
+  features[cell_points] = static_cast<float>(members.size()) / cells;
+  features[cell_spread] = spread / cells;
+  values_.clear();
+  for (const std::uint32_t cell : cells_) values_.push_back(steepest_[cell]);
+  features[Feature::steepest] = quantile({values_.data(), values_.size()}, 0.9);
+}
+
+/// What lies in the cluster's box and around it. The walk takes steps of a cell, so a turned box
+/// meets some cells twice.
+void ClusterContext::measure_around(Features& features, const OrientedBox& box,
+                                    const GroundSurface& surface, const BeamGrid& beams) {
+  GroundAround ground;
+  BeamsAround beams_around;
+  const float reach = std::hypot(box.length, box.width) / 2 + kFurtherAround;
+  const float step = surface.cell_size();
   const auto distance_of = box.distances();
   for (float y = box.center_y - reach; y <= box.center_y + reach; y += step) {
     for (float x = box.center_x - reach; x <= box.center_x + reach; x += step) {
       const float distance = distance_of(x, y);
       if (distance > kFurtherAround) continue;
       const std::size_t cell = surface.cell_at(x, y);
-      if (distance > 0) {
-        ended += beams.all_ended(cell);
-        scatter += beams.all_scatter(cell);
-        if (surface.is_ground(cell)) {
-          ++level_cells;
-          uneven += surface.roughness(cell);
-        }
-      }
-      if (distance > kAround) continue;
-      if (distance <= 0) {
-        ++inside;
-        if (surface.points_in(cell) == 0) ++unseen;
-        continue;
-      }
-      ++around;
-      if (surface.is_ground(cell)) ++ground;
-      if (!beams.is_loose(cell)) continue;
-      ++loose;
-      highest_loose = std::max(highest_loose, beams.highest(cell));
+      ground.add(cell, distance, surface);
+      if (distance > 0) beams_around.add(cell, distance, beams);
     }
   }
-  Features& features = cluster.features;
-  features[box_length] = box.length;
-  features[box_width] = box.width;
-  features[steepness] = static_cast<float>(slopes / static_cast<double>(members.size()));
-  features[rim_share] = rim / cells;
-  features[unseen_share] = unseen / std::max(inside, 1.0F);
-  features[ground_share] = ground / std::max(around, 1.0F);
-  features[loose_around] = loose / std::max(around, 1.0F);
-  features[over_loose] = features[max_height] - highest_loose;
-  features[ground_scatter] = scatter / std::max(ended, 1.0F);
-  features[through_share] = through / static_cast<float>(members.size());
-  features[cell_points] = static_cast<float>(members.size()) / cells;
-  features[cell_spread] = spread / cells;
-  features[roughness] = uneven / std::max(level_cells, 1.0F);
-  values_.clear();
-  for (const std::uint32_t cell : cells_) values_.push_back(steepest_[cell]);
-  features[Feature::steepest] = quantile({values_.data(), values_.size()}, 0.9);
-  measure_edge(features, surface);
-  measure_solidity(features, beams);
-  measure_scatter(features, beams);
+  ground.set(features);
+  beams_around.set(features);
 }
 
 /// A rock's edge is nearly as high as the rock, a mound begins low.
-void Surroundings::measure_edge(Features& features, const GroundSurface& surface) {
+void ClusterContext::measure_edge(Features& features, const GroundSurface& surface) {
   const auto is_ground = [&](std::size_t cell) {
     return visited_[cell] != number_ && surface.points_in(cell) > 0 && surface.is_ground(cell);
   };
@@ -169,7 +226,7 @@ void Surroundings::measure_edge(Features& features, const GroundSurface& surface
   features[edge_height] = values_.empty() ? 0 : quantile({values_.data(), values_.size()}, 0.5);
 }
 
-void Surroundings::measure_solidity(Features& features, const BeamGrid& beams) {
+void ClusterContext::measure_solidity(Features& features, const BeamGrid& beams) {
   constexpr float kSolid = 0.7F;
   const float half = half_height(features);
   float solid = 0, top_ended = 0, top_passed = 0;
@@ -187,7 +244,7 @@ void Surroundings::measure_solidity(Features& features, const BeamGrid& beams) {
 }
 
 /// A rock that grass grows against has cells of both.
-void Surroundings::measure_scatter(Features& features, const BeamGrid& beams) {
+void ClusterContext::measure_scatter(Features& features, const BeamGrid& beams) {
   float ended = 0, firm = 0, firm_ended = 0, solid = 0, most_solid = 0, all = 0, scatter = 0;
   values_.clear();
   for (const std::uint32_t cell : cells_) {
