@@ -71,7 +71,7 @@ const ObstacleList& Pipeline::process(const Sweep& sweep) {
   list_.stamp_ns = sweep.end_ns;
   if (uses_map_) {
     mapper_->add(sweep, *sensors_, timer_);
-    if (mapper_->has_begun_anew()) tracker_.clear();
+    if (mapper_->was_reset()) tracker_.clear();
     detect_in_map();
   } else {
     detect_in_sweep(sweep);

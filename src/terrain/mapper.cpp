@@ -8,9 +8,9 @@
 namespace scree {
 namespace {
 
-constexpr float kSurfel = 0.3F;      // metres
-constexpr double kMostAskew = 0.08;  // metres that a point may be too high or too low
-constexpr double kUnjudged = 0.01;   // rad: the attitude within a sweep, guessed for the first time
+constexpr float kSurfel = 0.3F;                 // edge, metres
+constexpr double kMaxHeightError = 0.08;        // metres that a point may be too high or too low
+constexpr double kInitialAttitudeError = 0.01;  // rad, when the IMU falls silent
 
 }  // namespace
 
@@ -30,15 +30,15 @@ Mapper::Mapper(const Settings& settings)
 void Mapper::add(const Sweep& sweep, const SyncBuffer& sensors, StageTimer& timer) {
   const std::int64_t begin_ns = sweep.end_ns + (sweep.points.empty() ? 0 : sweep.time_ns[0]);
   const Pose before = filter_.pose();
-  watch_for_slip(sensors, sweep.end_ns);
+  detect_slip(sensors, sweep.end_ns);
   step_ = dead_reckoning_.advance(sensors, begin_ns, sweep.end_ns, trajectory_,
                                   !slip_detector_.slips());
   const bool has_known_attitude = filter_.has_known_attitude();
   const bool was_silent = has_known_attitude && !filter_.knows_attitude();
   filter_.predict(step_);
-  has_begun_anew_ = filter_.has_known_attitude() && !has_known_attitude;
-  if (has_begun_anew_) {
-    // What was mapped before leans as the robot stood.
+  was_reset_ = filter_.has_known_attitude() && !has_known_attitude;
+  if (was_reset_) {
+    // What was mapped before is tilted as the robot stood.
     surfels_.clear();
     map_.clear();
   }
@@ -47,18 +47,19 @@ void Mapper::add(const Sweep& sweep, const SyncBuffer& sensors, StageTimer& time
   const Eigen::Quaterniond predicted = pose().rotation;
   outcome_ = {};
   if (registers_) {
-    correct();
+    register_sweep();
     timer.done(Stage::registration);
   }
-  assume_motion(before);
+  extrapolate_motion(before);
   levelling_.advance(sensors, step_, pose());
-  judge_guess(predicted, was_silent);
-  const double reach = askew_ > 0 ? kMostAskew / askew_ : std::numeric_limits<double>::infinity();
+  update_attitude_error(predicted, was_silent);
+  const double reach = attitude_error_ > 0 ? kMaxHeightError / attitude_error_
+                                           : std::numeric_limits<double>::infinity();
   map_.add(sweep_, filter_.pose(), sweep.end_ns, reach);
   timer.done(Stage::map);
 }
 
-void Mapper::watch_for_slip(const SyncBuffer& sensors, std::int64_t end_ns) {
+void Mapper::detect_slip(const SyncBuffer& sensors, std::int64_t end_ns) {
   slip_detector_.advance(sensors, dead_reckoning_.end_ns(), end_ns, dead_reckoning_.speed());
   if (slip_detector_.slips()) ++slips_;
   if (slip_detector_.slips() || !sensors.wheel_at(end_ns)) {
@@ -66,34 +67,34 @@ void Mapper::watch_for_slip(const SyncBuffer& sensors, std::int64_t end_ns) {
   }
 }
 
-void Mapper::correct() {
+void Mapper::register_sweep() {
   outcome_ = registration_.align(sweep_, surfels_, filter_);
   const Eigen::Matrix3f rotation = pose().rotation.toRotationMatrix().cast<float>();
   const Eigen::Vector3f translation = pose().translation.cast<float>();
   const auto reach = static_cast<float>(surfel_reach_);
   for (std::size_t i = 0; i < sweep_.points.size(); ++i) {
-    const Eigen::Vector3f seen(sweep_.points.x[i], sweep_.points.y[i], sweep_.points.z[i]);
-    if (seen.squaredNorm() > reach * reach) continue;
-    surfels_.add(rotation * seen + translation);
+    const Eigen::Vector3f in_base(sweep_.points.x[i], sweep_.points.y[i], sweep_.points.z[i]);
+    if (in_base.squaredNorm() > reach * reach) continue;
+    surfels_.add(rotation * in_base + translation);
   }
 }
 
-/// While the IMU is silent the turn within a sweep is guessed; what registration makes of the whole
-/// turn shows how well.
-void Mapper::judge_guess(const Eigen::Quaterniond& predicted, bool was_silent) {
+/// While the IMU is silent the attitude within a sweep is extrapolated; what registration makes of
+/// the sweep's whole turn shows how well.
+void Mapper::update_attitude_error(const Eigen::Quaterniond& predicted, bool was_silent) {
   constexpr double kKept = 0.5;  // each sweep
   if (!filter_.has_known_attitude() || (step_.knows_attitude && !was_silent)) {
-    askew_ = 0;
+    attitude_error_ = 0;
     return;
   }
-  if (askew_ == 0) askew_ = kUnjudged;
+  if (attitude_error_ == 0) attitude_error_ = kInitialAttitudeError;
   if (outcome_.key_points == 0) return;
-  const double off = logarithm(predicted.conjugate() * pose().rotation).head<2>().norm();
-  askew_ = std::max(off, kKept * askew_ + (1 - kKept) * off);
+  const double error = logarithm(predicted.conjugate() * pose().rotation).head<2>().norm();
+  attitude_error_ = std::max(error, kKept * attitude_error_ + (1 - kKept) * error);
 }
 
-/// A silent sensor is stood in for by what registration made of the motion.
-void Mapper::assume_motion(const Pose& before) {
+/// What registration made of the motion stands in for a silent sensor.
+void Mapper::extrapolate_motion(const Pose& before) {
   constexpr double kTrust = 0.5;  // in the latest step
   const double seconds = step_.seconds();
   if (seconds <= 0 || outcome_.key_points == 0) return;

@@ -19,8 +19,8 @@ namespace scree {
 
 /// Rebuilds the ground around the robot: each sweep is moved to its end by dead reckoning, laid
 /// onto the ground seen so far, and added to the rolling map. The map has a frame of its own, with
-/// the origin and the yaw of `odom`, which leans by what was wrong with the IMU's attitude at the
-/// first sweep; to_odom() lays it level. Memory is taken once, here.
+/// the origin and the yaw of `odom`. It is tilted by the error of the IMU's attitude at the first
+/// sweep; to_odom() lays it level. Memory is taken once, when it is made.
 class Mapper {
 public:
   explicit Mapper(const Settings& settings);
@@ -41,18 +41,18 @@ public:
   const RollingMap& map() const { return map_; }
   const MotionStep& step() const { return step_; }
   const Registration::Outcome& registration() const { return outcome_; }
-  /// Whether the last sweep found the map's frame wrong, so that the map began anew with it.
-  bool has_begun_anew() const { return has_begun_anew_; }
+  /// Whether the map began anew with the last sweep, because its frame was found wrong.
+  bool was_reset() const { return was_reset_; }
   /// Sweeps during which the wheel slipped.
   std::uint64_t slips() const { return slips_; }
   /// The last sweep in `base` at its end.
   const DeskewedSweep& sweep() const { return sweep_; }
 
 private:
-  void watch_for_slip(const SyncBuffer& sensors, std::int64_t end_ns);
-  void correct();
-  void judge_guess(const Eigen::Quaterniond& predicted, bool was_silent);
-  void assume_motion(const Pose& before);
+  void detect_slip(const SyncBuffer& sensors, std::int64_t end_ns);
+  void register_sweep();
+  void update_attitude_error(const Eigen::Quaterniond& predicted, bool was_silent);
+  void extrapolate_motion(const Pose& before);
 
   LidarSettings lidar_;
   bool registers_;
@@ -60,8 +60,8 @@ private:
   DeadReckoning dead_reckoning_;
   SlipDetector slip_detector_;
   std::uint64_t slips_ = 0;
-  bool has_begun_anew_ = false;
-  double askew_ = 0;  // rad: error of the turn within a sweep that was guessed; 0 of one measured
+  bool was_reset_ = false;
+  double attitude_error_ = 0;  // rad, within a sweep; 0 while the IMU measures it
   SweepTrajectory trajectory_;
   DeskewedSweep sweep_;
   PoseFilter filter_;

@@ -7,10 +7,10 @@
 namespace scree {
 
 /// The second step of registration (paper's reference 36, an improved ICP on key points): lays a
-/// sweep onto the surfels around it and corrects the filter's pose by what they bind. Key points
-/// are those on flat (curvature), well-filled (density) surfels, taken evenly from all directions
-/// of their normals; a correspondence counts within a threshold that follows the pose's uncertainty
-/// and the surfel's thickness.
+/// sweep onto the surfels around it, point to plane, and corrects the filter's pose by what they
+/// bind. Key points are those on flat (curvature), well-filled (density) surfels, taken evenly from
+/// all directions of their normals. A correspondence counts within a threshold that follows the
+/// pose's uncertainty and the surfel's thickness.
 class Registration {
 public:
   explicit Registration(std::size_t max_points);
@@ -24,6 +24,14 @@ public:
   Outcome align(const DeskewedSweep& sweep, SurfelMap& map, PoseFilter& filter);
 
 private:
+  /// What the key points at one pose say about it.
+  struct Linearization {
+    PoseEvidence evidence;
+    double squares = 0, weights = 0;  ///< weighted sum of the squared distances, m^2; its weights
+    int count = 0;                    ///< correspondences
+  };
+  Linearization linearize(const Pose& pose, double uncertainty, double shared,
+                          SurfelMap& map) const;
   void choose_key_points(const DeskewedSweep& sweep, SurfelMap& map, const Pose& pose);
 
   FixedVector<Eigen::Vector3f> key_points_;  // in `base`

@@ -18,11 +18,12 @@ struct Surfel {
   float points = 0;
 };
 
-/// The ground around the robot as planes in cubic cells, for registration. Bounded: cells lie in an
-/// ToroidalGrid, and a cell is taken over by the place that was seen last. So what the robot leaves
-/// behind is forgotten. Planes of many points hardly move any more: sweeps are laid onto the ground
-/// as it was first seen. Points are floats in the map's frame: good to 1 mm as far as 8 km from its
-/// origin, to 1 cm as far as 80 km.
+/// The ground around the robot as planes in cubic cells, for registration. Its memory is bounded by
+/// a ToroidalGrid; a slot belongs to the cell that was seen last, so that what the robot leaves
+/// behind goes. Planes of many points hardly move any more: sweeps are laid onto the ground as it
+/// was first seen.
+/// @note Points are floats in the map's frame: good to 1 mm as far as 8 km from its origin, to 1 cm
+/// as far as 80 km.
 class SurfelMap {
 public:
   /// @param cell edge, metres
@@ -44,7 +45,7 @@ private:
     bool is_used = false;
     bool is_fresh = false;  // the surfel is that of the sums
     bool is_plane = false;
-    std::uint8_t left_out = 0;  // points, of a standing plane; wraps
+    std::uint8_t left_out = 0;  // points, since the plane settled; wraps
     float points = 0;
     Eigen::Vector3f sum = Eigen::Vector3f::Zero();  // from the cell's middle
     float xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
