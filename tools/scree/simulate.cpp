@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "commands.hpp"
-#include "progress.hpp"
+#include "common/progress.hpp"
 #include "simulator/capture.hpp"
 #include "simulator/scene.hpp"
 

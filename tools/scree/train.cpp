@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "progress.hpp"
+#include "common/progress.hpp"
 #include "scree/app/pipeline.hpp"
 #include "scree/config/keys.hpp"
 #include "scree/learn/metrics.hpp"
 #include "scree/learn/training.hpp"
-#include "simulator/data_set.hpp"
 #include "simulator/scene.hpp"
+#include "training/data_set.hpp"
 
 namespace scree::cli {
 namespace {

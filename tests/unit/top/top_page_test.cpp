@@ -1,4 +1,4 @@
-#include "top_page.hpp"
+#include "live/top_page.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "top_page.hpp"
+#include "live/top_page.hpp"
 
 namespace scree::cli {
 namespace {

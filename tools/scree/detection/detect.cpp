@@ -1,0 +1,126 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <cstdio>
+#include <fstream>
+#include <memory>
+
+#include "commands.hpp"
+#include "detection/pipeline_capture.hpp"
+#include "detection/stages.hpp"
+#include "read/lidar_capture.hpp"
+#include "scree/capture/capture.hpp"
+#include "scree/capture/pcd.hpp"
+#include "scree/publish/jsonl.hpp"
+
+namespace scree::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct DetectOptions {
+  fs::path input, config, out, stages;
+};
+
+/// The lists as lines of JSON, in a file or on standard output.
+class ListWriter {
+public:
+  explicit ListWriter(const fs::path& file) : to_stdout_(file.empty() || file == "-") {
+    if (to_stdout_) return;
+    file_.open(file, std::ios::binary);
+    if (!file_) throw Failure("cannot write " + file.string());
+  }
+
+  void write(const ObstacleList& list) {
+    line_.clear();
+    append_json_line(list, line_);
+    if (to_stdout_) {
+      std::fwrite(line_.data(), 1, line_.size(), stdout);
+    } else {
+      file_ << line_;
+    }
+  }
+
+  void finish() {
+    if (!to_stdout_ && !file_.flush()) throw Failure("cannot write the list: the disk may be full");
+  }
+
+  /// Where counts go, so that they do not mix with lists.
+  std::FILE* other_output() const { return to_stdout_ ? stderr : stdout; }
+
+private:
+  bool to_stdout_;
+  std::ofstream file_;
+  std::string line_;
+};
+
+void warn_of_losses(const StageCounts& counts, std::string_view what) {
+  warn(what, counts.dropped, "points found no room: raise [memory]");
+  warn(what, counts.refused, "points are not finite or too far out, and were left out");
+  warn(what, counts.candidates_dropped, "points of obstacles found no room: raise [memory]");
+  warn(what, counts.obstacles_dropped, "obstacles found no room: raise memory.obstacles");
+}
+
+void detect_in_cloud(const DetectOptions& options) {
+  Settings settings = capture_settings(options.input, options.config);
+  const auto cloud = read_pcd(options.input);
+  if (!cloud) throw Failure(cloud.error().message);
+  // At the desk there is time: nothing of the file is left out.
+  MemorySettings& memory = settings.memory;
+  memory.cloud_points = std::max(memory.cloud_points, static_cast<int>(cloud->size()));
+  auto detector = make_detector(settings.detect_cloud, memory.for_cloud(),
+                                settings_file(options.input, options.config).value_or(fs::path()));
+  if (!detector) throw Failure(detector.error().message);
+
+  ListWriter writer(options.out);
+  ObstacleList list(static_cast<std::size_t>(memory.obstacles));
+  detector->detect(*cloud, list.obstacles);
+  writer.write(list);
+  writer.finish();
+  warn_of_losses(detector->counts(), options.input.string());
+  if (options.stages.empty()) return;
+  write_stages(*detector, *cloud, options.stages);
+  fmt::print(writer.other_output(), "{}\n", chain(detector->counts()));
+}
+
+void detect_in_capture(const DetectOptions& options) {
+  PipelineCapture capture(options.input, options.config);
+  Pipeline& pipeline = capture.pipeline();
+  ListWriter writer(options.out);
+  std::size_t sweeps = 0;
+  capture.play([&](const Sweep& sweep) {
+    writer.write(pipeline.process(sweep));
+    const std::string name = fmt::format("sweep_{:06}", sweeps++);
+    const StageCounts counts = pipeline.counts();
+    warn_of_losses(counts, name);
+    if (options.stages.empty()) return;
+    write_stages(pipeline.detector(), pipeline.ground(), options.stages / name);
+    fmt::print(writer.other_output(), "{}: {}\n", name, chain(counts));
+  });
+  writer.finish();
+}
+
+}  // namespace
+
+void add_detect(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("detect", "Obstacles in a capture or a point cloud, one line a list");
+  auto options = std::make_shared<DetectOptions>();
+  command
+      ->add_option("INPUT", options->input,
+                   "capture (folder, .pcap, .pcapng, LCM log) or cloud (.pcd)")
+      ->required()
+      ->check(CLI::ExistingPath);
+  command->add_option("--config", options->config, "configuration; default: the capture's own");
+  command->add_option("--out", options->out, "JSON lines file; default: standard output");
+  command->add_option("--stages", options->stages,
+                      "folder for the cloud of each stage as PCD; prints their counts");
+  command->callback([options] {
+    if (options->input.extension() == ".pcd") {
+      detect_in_cloud(*options);
+    } else {
+      detect_in_capture(*options);
+    }
+  });
+}
+
+}  // namespace scree::cli

@@ -1,0 +1,78 @@
+#include "detection/pipeline_capture.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <cstdio>
+#include <utility>
+
+#include "commands.hpp"
+#include "detection/waiting_sweeps.hpp"
+#include "scree/capture/capture.hpp"
+
+namespace scree::cli {
+namespace {
+
+Pipeline make_pipeline(const Settings& settings, const std::filesystem::path& capture,
+                       const std::filesystem::path& config) {
+  auto pipeline =
+      Pipeline::make(settings, settings_file(capture, config).value_or(std::filesystem::path()));
+  if (!pipeline) throw Failure(pipeline.error().message);
+  return *std::move(pipeline);
+}
+
+void warn_of_losses(Pipeline& pipeline, const WaitingSweeps& sweeps) {
+  const Mapper& mapper = pipeline.mapper();
+  warn("map", mapper.map().dropped(), "points found no room: raise memory.map_voxels");
+  warn("map", mapper.slips(),
+       "sweeps during which the wheel slipped; it was not believed (in all of them: encoder.scale "
+       "is wrong, or its sign)");
+  warn("tracks", pipeline.tracker().dropped(), "found no room: raise memory.obstacles");
+  warn("IMU", pipeline.sensors().heading().taken_out(),
+       "turns of its yaw that its angular rate did not know of; they were not believed");
+  warn("motion", pipeline.sensors().dropped(), "samples of IMU or encoder found no room");
+  warn("motion", pipeline.sensors().late(),
+       "samples of IMU or encoder were not newer than the one before, or no plausible numbers");
+  warn("motion", sweeps.not_covered(),
+       "sweeps went on without the samples of IMU or encoder that cover them: those came later "
+       "than map.wait");
+}
+
+}  // namespace
+
+void warn(std::string_view what, std::uint64_t count, std::string_view reason) {
+  if (count > 0) fmt::print(stderr, "scree: {}: {} {}\n", what, count, reason);
+}
+
+PipelineCapture::PipelineCapture(const std::filesystem::path& capture,
+                                 const std::filesystem::path& config)
+    : settings_(capture_settings(capture, config)),
+      lidar_(capture, settings_),
+      pipeline_(make_pipeline(settings_, capture, config)),
+      motion_(capture, config, settings_, pipeline_.sensors()) {}
+
+void PipelineCapture::play(const std::function<void(const Sweep&)>& process) {
+  WaitingSweeps waiting(settings_.map.wait, pipeline_.sensors(), process);
+  std::int64_t now_ns = 0;
+  velodyne::LidarStream stream(settings_.lidar, [&](Sweep& sweep) {
+    if (!sweep.points.empty()) waiting.push(sweep, now_ns);
+  });
+  lidar_.play(stream, {}, [&](std::int64_t arrival_ns) {
+    now_ns = arrival_ns;
+    motion_.play_until(arrival_ns);
+    waiting.process_ready(arrival_ns);
+  });
+  // Motion goes on until the last sweeps are covered, and no further: history is short.
+  constexpr std::int64_t kStepNs = 10'000'000;
+  const std::int64_t end_ns = now_ns + static_cast<std::int64_t>(settings_.map.wait * 1e9);
+  for (; waiting.has_any() && now_ns < end_ns; now_ns += kStepNs) {
+    motion_.play_until(now_ns);
+    waiting.process_ready(now_ns);
+  }
+  waiting.process_all();
+  motion_.finish();
+  report_capture(lidar_, stream);
+  motion_.report();
+  warn_of_losses(pipeline_, waiting);
+}
+
+}  // namespace scree::cli

@@ -1,0 +1,126 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <utility>
+
+#include "commands.hpp"
+#include "detection/detections.hpp"
+#include "detection/pipeline_capture.hpp"
+#include "draw/top_view.hpp"
+#include "live/health_words.hpp"
+#include "scree/capture/pcd.hpp"
+#include "scree/core/rotation.hpp"
+
+namespace scree::cli {
+namespace {
+
+struct PictureOptions {
+  std::string input, detections, out, config;
+};
+
+/// What the obstacles lie on.
+struct Ground {
+  PointCloud points;          // `base` frame
+  std::string what;           // for the subtitle
+  std::int64_t stamp_ns = 0;  // of the sweep
+};
+
+PointCloud moved(const PointCloud& cloud, const Pose& pose) {
+  const Eigen::Affine3f motion =
+      (Eigen::Translation3d(pose.translation) * pose.rotation).cast<float>();
+  PointCloud result(cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Eigen::Vector3f place = motion * Eigen::Vector3f(cloud.x[i], cloud.y[i], cloud.z[i]);
+    result.push_back(place.x(), place.y(), place.z(), cloud.reflectivity[i]);
+  }
+  return result;
+}
+
+/// What the detector had at the end of the capture: the map, or, of a lidar alone, the last sweep.
+Ground ground_of_capture(const PictureOptions& options) {
+  PipelineCapture capture(options.input, options.config);
+  Pipeline& pipeline = capture.pipeline();
+  Ground ground;
+  bool is_whole = false;
+  capture.play([&](const Sweep& sweep) {
+    // The last sweep may be a part of a turn: of no use by itself.
+    if (is_whole && !sweep.is_whole && !pipeline.uses_map()) return;
+    is_whole = sweep.is_whole;
+    pipeline.process(sweep);
+    ground.stamp_ns = sweep.end_ns;
+  });
+  const Mapper& mapper = pipeline.mapper();
+  Pose ground_in_base;
+  ground.what = "one sweep, ";
+  if (pipeline.uses_map()) {
+    const Pose map_in_odom{mapper.map().origin(), Eigen::Quaterniond::Identity()};
+    ground_in_base = mapper.pose().inverse() * map_in_odom;
+    ground.what = "the ground as it was rebuilt until ";
+  }
+  ground.what += time_of_day(ground.stamp_ns) + " UTC";
+  ground.points = moved(pipeline.ground(), ground_in_base);
+  return ground;
+}
+
+Ground ground_of_cloud(const PictureOptions& options) {
+  auto cloud = read_pcd(options.input);
+  if (!cloud) throw Failure(cloud.error().message);
+  return {std::move(*cloud), "one point cloud", 0};
+}
+
+/// The obstacles of a list in `base`.
+FixedVector<Obstacle> in_base(const ObstacleList& list) {
+  const Pose to_base = list.pose.inverse();
+  const double yaw = yaw_of(list.pose.rotation);
+  FixedVector<Obstacle> obstacles(list.obstacles.size());
+  for (Obstacle obstacle : list.obstacles) {
+    obstacle.center = to_base * obstacle.center;
+    obstacle.yaw -= yaw;
+    obstacles.push_back(obstacle);
+  }
+  return obstacles;
+}
+
+/// The list of this sweep; the last one where the lists are a live daemon's, whose times are
+/// others.
+const ObstacleList& list_of(const std::vector<ObstacleList>& lists, std::int64_t stamp_ns) {
+  const auto found = std::ranges::find(lists, stamp_ns, &ObstacleList::stamp_ns);
+  return found != lists.end() ? *found : lists.back();
+}
+
+void picture(const PictureOptions& options) {
+  const auto lists = read_detections(options.detections);
+  if (lists.empty()) throw Failure(options.detections + " holds no obstacle list");
+  const bool is_cloud = std::filesystem::path(options.input).extension() == ".pcd";
+  const Ground ground = is_cloud ? ground_of_cloud(options) : ground_of_capture(options);
+  const std::string title =
+      "Obstacles of " + std::filesystem::path(options.input).lexically_normal().filename().string();
+  const ObstacleList& list = list_of(lists, ground.stamp_ns);
+  Drawing drawing = draw_top_view(ground.points, in_base(list), title, ground.what);
+  drawing.write_png(options.out);
+  fmt::print("{}: {}, {} points, {} obstacles\n", options.out, ground.what, ground.points.size(),
+             list.obstacles.size());
+}
+
+}  // namespace
+
+void add_picture(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "picture",
+      "Draw the ground at the end of a capture, or a cloud, with its obstacles from above");
+  auto options = std::make_shared<PictureOptions>();
+  command->add_option("input", options->input, "capture or .pcd file")
+      ->required()
+      ->type_name("INPUT");
+  command->add_option("detections", options->detections, "its obstacle lists")
+      ->required()
+      ->type_name("DETECTIONS.jsonl");
+  command->add_option("--out", options->out, "picture to write")->required()->type_name("FILE.png");
+  command->add_option("--config", options->config, "configuration [scree.toml in the capture]")
+      ->type_name("FILE");
+  command->callback([options] { picture(*options); });
+}
+
+}  // namespace scree::cli

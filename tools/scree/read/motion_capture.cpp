@@ -1,0 +1,70 @@
+#include "read/motion_capture.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <cstdio>
+
+#include "commands.hpp"
+#include "scree/capture/capture.hpp"
+
+namespace scree::cli {
+namespace {
+
+void note(const std::string& text) {
+  fmt::print(stderr, "scree: {}\n", text);
+}
+
+/// In one thread nothing has to wait in a ring, which a long part without lidar would overflow.
+template <class Sample>
+void put(SyncBuffer& sensors, const Sample& sample) {
+  sensors.put(sample);
+  sensors.gather();
+}
+
+}  // namespace
+
+MotionCapture::MotionCapture(const std::filesystem::path& capture,
+                             const std::filesystem::path& config, const Settings& settings,
+                             SyncBuffer& sensors)
+    : encoder_settings_(encoder_settings(capture, config)),
+      imu_stream_(settings.imu, [&sensors](const ImuSample& sample) { put(sensors, sample); }),
+      encoder_stream_(encoder_settings_,
+                      [&sensors](const EncoderSample& sample) { put(sensors, sample); }) {
+  if (!std::filesystem::is_directory(capture)) return;
+  if (imu_file(capture)) imu_.emplace(capture);
+  if (can_file(capture)) encoder_.emplace(capture, encoder_settings_);
+}
+
+void MotionCapture::play_until(std::int64_t arrival_ns) {
+  if (imu_) imu_->play_until(arrival_ns, imu_stream_);
+  if (encoder_) encoder_->play_until(arrival_ns, encoder_stream_);
+}
+
+void MotionCapture::finish() {
+  if (imu_) imu_->play(imu_stream_);
+  if (encoder_) encoder_->play(encoder_stream_);
+}
+
+void MotionCapture::report() const {
+  if (!imu_ && !encoder_) {
+    note("neither IMU nor encoder in the capture: each sweep was taken by itself");
+    return;
+  }
+  if (!imu_) {
+    note("no IMU in the capture");
+  } else if (imu_stream_.counters().accepted == 0) {
+    note(imu_->why_nothing(imu_stream_));
+  } else {
+    report_capture(*imu_, imu_stream_);
+    if (imu_stream_.counters().oriented == 0) note("the IMU sent no orientation: it is not used");
+  }
+  if (!encoder_) {
+    note("no encoder in the capture");
+  } else if (encoder_stream_.counters().accepted == 0) {
+    note(encoder_->why_nothing(encoder_stream_));
+  } else {
+    encoder_->report(encoder_stream_);
+  }
+}
+
+}  // namespace scree::cli

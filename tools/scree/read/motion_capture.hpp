@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+#include "read/encoder_capture.hpp"
+#include "read/imu_capture.hpp"
+#include "scree/sync/sync_buffer.hpp"
+
+namespace scree::cli {
+
+/// The IMU's and the encoder's part of a capture, played into the pipeline as time goes on. A
+/// capture may lack either.
+class MotionCapture {
+public:
+  /// Keeps a reference to the buffer. Throws Failure.
+  MotionCapture(const std::filesystem::path& capture, const std::filesystem::path& config,
+                const Settings& settings, SyncBuffer& sensors);
+
+  /// Plays what had arrived by then.
+  void play_until(std::int64_t arrival_ns);
+  void finish();
+  /// Says on stderr what a person should know: what was refused, a sensor that said nothing.
+  void report() const;
+
+private:
+  EncoderSettings encoder_settings_;  // with what their DBC file says
+  std::optional<ImuCapture> imu_;
+  std::optional<EncoderCapture> encoder_;
+  xsens::ImuStream imu_stream_;
+  encoder::EncoderStream encoder_stream_;
+};
+
+}  // namespace scree::cli
