@@ -66,6 +66,18 @@ TEST(Pipeline, TheNetworkOfTracksMayBeLeftOutButNotMissing) {
   EXPECT_TRUE(Pipeline::make(settings, config_file));
 }
 
+TEST(Pipeline, ANetworkThatAsksForMoreFeaturesThanTheMethodHasIsRefused) {
+  const std::string config_file = std::string(SCREE_SOURCE) + "/config/scree.toml";
+  Settings settings;
+  settings.detect_map.method = Method::edges;
+  const auto made = Pipeline::make(settings, config_file);
+  ASSERT_FALSE(made);
+  EXPECT_EQ(made.error().message,
+            "network_map.txt takes 33 features, and method = \"edges\" has 5");
+  settings.detect_map.network = "network_paper.txt";
+  EXPECT_TRUE(Pipeline::make(settings, config_file));
+}
+
 TEST(Pipeline, NothingIsAllocatedFromPacketToListAfterTheStart) {
   const Settings settings;
   Pipeline pipeline = pipeline_of(settings);
