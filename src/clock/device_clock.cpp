@@ -9,7 +9,7 @@
 namespace scree {
 namespace {
 
-/// How far the clocks may run apart in a time: 200 ppm.
+/// How far the clocks may run apart in a time: 200 ppm, four times what crystals are good for.
 constexpr std::int64_t drift(std::int64_t elapsed_ns) {
   return std::max<std::int64_t>(elapsed_ns, 0) / 5000;
 }
@@ -35,7 +35,7 @@ constexpr std::int64_t kEarly = kMillisecond;
 /// ... within this time.
 constexpr std::int64_t kEarlyWithin = 10 * kSecond;
 
-/// Of so many packets over so long one at least had next to no delay.
+/// One at least of so many packets over so long had next to no delay.
 constexpr std::int64_t kEnoughPackets = 20, kLongEnough = kSecond;
 
 /// Host times given out are brought to the best known by one part of this of the time that goes by.
@@ -63,7 +63,7 @@ std::int64_t DeviceClock::wrapped(std::int64_t difference_ns) const {
 bool DeviceClock::update(std::int64_t device_ns, std::int64_t arrival_ns) {
   if (!started_) {
     const ClockSample first{device_ns, arrival_ns - device_ns};
-    start_over(first, first);
+    restart(first, first);
     return true;
   }
   const std::int64_t host_elapsed = arrival_ns - last_.host_ns();
@@ -77,15 +77,15 @@ bool DeviceClock::update(std::int64_t device_ns, std::int64_t arrival_ns) {
 
   const bool is_late = excess > kTooLate + leak, is_backwards = device_elapsed < -kBackwards;
   if (is_backwards || is_late || excess < -kTooEarly - leak) {
-    return suspect(device_ns, arrival_ns, is_late && !is_backwards);
+    return handle_outlier(device_ns, arrival_ns, is_late && !is_backwards);
   }
-  suspects_.reset();
+  outliers_.reset();
   if (is_late_for_long(sample)) {
     ++host_steps_;
-    start_over(sample, late_row_->least);
+    restart(sample, late_run_->least);
     return true;
   }
-  if (late_row_) {
+  if (late_run_) {
     // They tell nothing of the envelope, but would make delays of this size look usual.
   } else if (excess >= -kEarly - leak) {
     envelope_.add(sample);
@@ -96,50 +96,50 @@ bool DeviceClock::update(std::int64_t device_ns, std::int64_t arrival_ns) {
   } else {
     early_ = sample;
   }
-  take(sample);
+  accept(sample);
   return false;
 }
 
-void DeviceClock::take(const ClockSample& sample) {
+void DeviceClock::accept(const ClockSample& sample) {
   ++packets_;
   if (sample.device_ns > last_.device_ns) {
     last_ = sample;
-    state_ = judge();
-    give_out(sample.device_ns);
+    state_ = next_state();
+    slew_to(sample.device_ns);
   }
   anchor_device_ns_ = last_.device_ns;
-  anchor_host_ns_ = last_.device_ns + given_.offset_ns;
+  anchor_host_ns_ = last_.device_ns + slewed_.offset_ns;
 }
 
 bool DeviceClock::is_late_for_long(const ClockSample& sample) {
   const std::int64_t excess = envelope_.excess_ns(sample);
   if (excess <= kLate + 8 * envelope_.usual_excess_ns()) {
-    late_row_.reset();
+    late_run_.reset();
     return false;
   }
-  if (!late_row_) late_row_ = {sample.host_ns(), sample};
-  if (excess < envelope_.excess_ns(late_row_->least)) late_row_->least = sample;
-  return sample.host_ns() - late_row_->since_ns > kLateFor;
+  if (!late_run_) late_run_ = {sample.host_ns(), sample};
+  if (excess < envelope_.excess_ns(late_run_->least)) late_run_->least = sample;
+  return sample.host_ns() - late_run_->since_ns > kLateFor;
 }
 
-bool DeviceClock::suspect(std::int64_t device_ns, std::int64_t arrival_ns, bool is_late) {
+bool DeviceClock::handle_outlier(std::int64_t device_ns, std::int64_t arrival_ns, bool is_late) {
   ++implausible_;
   const auto begin = [&] {
-    suspects_ = {device_ns, arrival_ns, {device_ns, arrival_ns - device_ns}};
+    outliers_ = {device_ns, arrival_ns, {device_ns, arrival_ns - device_ns}};
   };
-  if (!suspects_) begin();
-  const std::int64_t elapsed = wrapped(device_ns - suspects_->first_device_ns);
-  const std::int64_t host_elapsed = arrival_ns - suspects_->first_arrival_ns;
+  if (!outliers_) begin();
+  const std::int64_t elapsed = wrapped(device_ns - outliers_->first_device_ns);
+  const std::int64_t host_elapsed = arrival_ns - outliers_->first_arrival_ns;
   if (std::abs(elapsed - host_elapsed) > kAgreement + drift(host_elapsed)) begin();
 
-  const std::int64_t now_ns = suspects_->first_device_ns + elapsed;
+  const std::int64_t now_ns = outliers_->first_device_ns + elapsed;
   const ClockSample sample{now_ns, arrival_ns - now_ns};
-  if (sample.offset_ns < suspects_->least.offset_ns) suspects_->least = sample;
-  if (arrival_ns - suspects_->first_arrival_ns >= kCertainAfter) {
-    const std::int64_t step = wrapped(suspects_->first_device_ns - last_.device_ns);
+  if (sample.offset_ns < outliers_->least.offset_ns) outliers_->least = sample;
+  if (arrival_ns - outliers_->first_arrival_ns >= kCertainAfter) {
+    const std::int64_t step = wrapped(outliers_->first_device_ns - last_.device_ns);
     const bool device_is_steady = step > 0 && step < kSecond;
     ++(device_is_steady ? host_steps_ : device_restarts_);
-    start_over(sample, suspects_->least);
+    restart(sample, outliers_->least);
     return true;
   }
   // What waited in a buffer is late, and its stamps are right all the same.
@@ -150,7 +150,7 @@ bool DeviceClock::suspect(std::int64_t device_ns, std::int64_t arrival_ns, bool 
   return false;
 }
 
-void DeviceClock::start_over(const ClockSample& newest, const ClockSample& least) {
+void DeviceClock::restart(const ClockSample& newest, const ClockSample& least) {
   started_ = true;
   state_ = ClockState::unsynchronised;
   last_ = newest;
@@ -159,25 +159,25 @@ void DeviceClock::start_over(const ClockSample& newest, const ClockSample& least
   envelope_.reset(least);
   envelope_.add(newest);
   edges_.clear();
-  suspects_.reset();
-  late_row_.reset();
+  outliers_.reset();
+  late_run_.reset();
   early_.reset();
   const ClockLine& line = envelope_.line();
-  given_ = {newest.device_ns, line.offset_at(newest.device_ns), line.skew_ppb};
+  slewed_ = {newest.device_ns, line.offset_at(newest.device_ns), line.skew_ppb};
   anchor_device_ns_ = newest.device_ns;
-  anchor_host_ns_ = newest.device_ns + given_.offset_ns;
+  anchor_host_ns_ = newest.device_ns + slewed_.offset_ns;
 }
 
-void DeviceClock::give_out(std::int64_t device_ns) {
+void DeviceClock::slew_to(std::int64_t device_ns) {
   const ClockLine line = best_line();
   const std::int64_t slew = state_ == ClockState::unsynchronised ? kSlewAtFirst : kSlew;
-  const std::int64_t most = (device_ns - given_.device_ns) / slew;
-  const std::int64_t expected = given_.offset_at(device_ns);
+  const std::int64_t most = (device_ns - slewed_.device_ns) / slew;
+  const std::int64_t expected = slewed_.offset_at(device_ns);
   const std::int64_t change = std::clamp(line.offset_at(device_ns) - expected, -most, most);
-  given_ = {device_ns, expected + change, line.skew_ppb};
+  slewed_ = {device_ns, expected + change, line.skew_ppb};
 }
 
-ClockState DeviceClock::judge() const {
+ClockState DeviceClock::next_state() const {
   if (state_ == ClockState::unsynchronised) {
     const bool enough =
         packets_ >= kEnoughPackets && last_.device_ns - begin_device_ns_ >= kLongEnough;
@@ -208,11 +208,12 @@ void DeviceClock::pps(std::int64_t host_edge_ns) {
 
 std::int64_t DeviceClock::to_host(std::int64_t device_ns) const {
   const std::int64_t elapsed = wrapped(device_ns - anchor_device_ns_);
-  return anchor_host_ns_ + elapsed + gained_ns(elapsed, given_.skew_ppb);
+  return anchor_host_ns_ + elapsed + gained_ns(elapsed, slewed_.skew_ppb);
 }
 
 std::int64_t DeviceClock::accuracy_ns() const {
-  const std::int64_t behind = std::abs(best_line().offset_at(given_.device_ns) - given_.offset_ns);
+  const std::int64_t behind =
+      std::abs(best_line().offset_at(slewed_.device_ns) - slewed_.offset_ns);
   if (state_ == ClockState::pps_locked) return behind + edges_.jitter_ns();
   const bool is_new = state_ == ClockState::unsynchronised;
   return behind + std::max(envelope_.accuracy_ns(), is_new ? kLate : 0);

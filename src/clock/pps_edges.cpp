@@ -16,7 +16,7 @@ bool PpsEdges::add(const ClockSample& edge, std::int64_t skew_ppb) {
     --count_;
   }
   edges_[count_++] = edge;
-  judge(skew_ppb);
+  update_lock(skew_ppb);
   return agrees;
 }
 
@@ -30,7 +30,7 @@ ClockLine PpsEdges::line(std::int64_t skew_ppb) const {
   return {last.device_ns, offsets[count_ / 2], skew_ppb};
 }
 
-void PpsEdges::judge(std::int64_t skew_ppb) {
+void PpsEdges::update_lock(std::int64_t skew_ppb) {
   const ClockLine median = line(skew_ppb);
   std::size_t agreeing = 0;
   jitter_ns_ = 0;

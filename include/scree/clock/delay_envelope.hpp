@@ -16,7 +16,7 @@ namespace scree {
 /// below their mean device time is the line below all of them that is closest to them (Moon, Skelly
 /// and Towsley, "Estimation and removal of clock skew from network delay measurements", 1999).
 ///
-/// Of each stretch of time only the sample of least delay is kept. The stretches are short at first
+/// Each bucket, a stretch of time, keeps only its sample of least delay. Buckets are short at first
 /// and get longer until kBuckets of them make a minute, so that the first second is resolved too.
 ///
 /// A slope over a short time is the noise's. It is weighed by what the delays let expect of it

@@ -77,7 +77,7 @@ public:
   /// How far off to_host() may be at the last update, apart from the least delay where `estimated`.
   std::int64_t accuracy_ns() const;
   /// How much longer the host finds a second of the device, in 1e-9.
-  std::int64_t skew_ppb() const { return given_.skew_ppb; }
+  std::int64_t skew_ppb() const { return slewed_.skew_ppb; }
 
   std::uint64_t device_restarts() const { return device_restarts_; }
   std::uint64_t host_steps() const { return host_steps_; }
@@ -92,22 +92,22 @@ public:
 
 private:
   /// Packets that do not fit the estimate, but one another.
-  struct Suspects {
+  struct Outliers {
     std::int64_t first_device_ns, first_arrival_ns;
     ClockSample least;  ///< of the least delay
   };
-  /// An unbroken row of late packets.
-  struct LateRow {
+  /// Late packets, one after the other.
+  struct LateRun {
     std::int64_t since_ns;  ///< arrival of the first
     ClockSample least;
   };
 
-  bool suspect(std::int64_t device_ns, std::int64_t arrival_ns, bool is_late);
+  bool handle_outlier(std::int64_t device_ns, std::int64_t arrival_ns, bool is_late);
   bool is_late_for_long(const ClockSample& sample);
-  void take(const ClockSample& sample);
-  void start_over(const ClockSample& newest, const ClockSample& least);
-  void give_out(std::int64_t device_ns);
-  ClockState judge() const;
+  void accept(const ClockSample& sample);
+  void restart(const ClockSample& newest, const ClockSample& least);
+  void slew_to(std::int64_t device_ns);
+  ClockState next_state() const;
   ClockLine best_line() const;
   /// The difference of two device times, within half a period.
   std::int64_t wrapped(std::int64_t difference_ns) const;
@@ -121,13 +121,13 @@ private:
   std::int64_t begin_device_ns_ = 0;  ///< of the first packet since it started over
   std::int64_t packets_ = 0;          ///< since then
   DelayEnvelope envelope_;
-  ClockLine given_;  ///< what to_host() tells: follows the best line
+  ClockLine slewed_;  ///< what to_host() tells: follows the best line
 
   // Device and host time that to_host() counts from: those of the last update.
   std::int64_t anchor_device_ns_ = 0, anchor_host_ns_ = 0;
 
-  std::optional<Suspects> suspects_;
-  std::optional<LateRow> late_row_;
+  std::optional<Outliers> outliers_;
+  std::optional<LateRun> late_run_;
   std::optional<ClockSample> early_;  ///< one early packet that waits for a second one
 
   PpsEdges edges_;

@@ -29,7 +29,7 @@ public:
   std::int64_t jitter_ns() const { return jitter_ns_; }
 
 private:
-  void judge(std::int64_t skew_ppb);
+  void update_lock(std::int64_t skew_ppb);
 
   std::array<ClockSample, kEdges> edges_{};  ///< oldest first
   std::size_t count_ = 0, refused_in_row_ = 0;

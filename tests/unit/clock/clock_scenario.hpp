@@ -87,7 +87,7 @@ public:
     now_ += sample_ns - static_cast<std::int64_t>(static_cast<double>(sample_ns) * ppm * 1e-6);
     return started_over;
   }
-  /// Of the last sample's stamp: what to_host() makes of it, and how late that is.
+  /// What to_host() makes of the last sample's stamp, and how late that is.
   std::int64_t host() const { return clock.to_host(stamp_); }
   std::int64_t error() const { return host() - truth_; }
   /// How late the last sample came.
