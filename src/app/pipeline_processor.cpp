@@ -29,7 +29,7 @@ void PipelineProcessor::add_drops() {
 MotionReport PipelineProcessor::motion_report() const {
   MotionReport report;
   report.slips = pipeline_.mapper().slips();
-  report.heading_resets = pipeline_.sensors().heading().taken_out();
+  report.heading_resets = pipeline_.sensors().heading().corrections();
   if (!pipeline_.uses_map()) return report;
   const PoseFilter& filter = pipeline_.mapper().filter();
   report.position_deviation = filter.position_deviation().head<2>().maxCoeff();

@@ -1,4 +1,4 @@
-#include "scree/sync/heading_watch.hpp"
+#include "scree/sync/heading_jump_filter.hpp"
 
 #include <cmath>
 
@@ -6,11 +6,11 @@
 
 namespace scree {
 
-void HeadingWatch::keep(ImuSample& sample) {
+void HeadingJumpFilter::correct(ImuSample& sample) {
   constexpr double kLongest = 0.05;  // seconds between samples: beyond it two rates say too little
   constexpr double kFading = 1;      // seconds
   // More than the bias of a gyroscope of this class and the smoothing of its rate, rad ...
-  constexpr double kMost = 0.026;
+  constexpr double kMaxUnexplained = 0.026;
   constexpr double kScale = 0.02;  // ... more than an error of its scale, ...
   constexpr double kSigmas = 3;    // ... and than vibration between the samples.
   constexpr double kJerk = 5;      // rad/s from sample to sample: such a rate is garbled
@@ -28,10 +28,10 @@ void HeadingWatch::keep(ImuSample& sample) {
     unexplained_ = kept * unexplained_ + unexplained;
     turned_ = kept * turned_ + std::abs(turn);
     noise_ *= kept;
-    if (std::abs(unexplained_) > kMost + kScale * turned_ + kSigmas * std::sqrt(noise_)) {
+    if (std::abs(unexplained_) > kMaxUnexplained + kScale * turned_ + kSigmas * std::sqrt(noise_)) {
       correction_ -= unexplained_;
       unexplained_ = 0;
-      ++taken_out_;
+      ++corrections_;
     } else {
       // From sample to sample, for a turn that lasts is no noise.
       const double change = unexplained - last_unexplained_;

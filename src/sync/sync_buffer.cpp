@@ -60,35 +60,35 @@ bool SyncBuffer::put(const EncoderSample& sample) {
   return put(sample, wheel_ring_);
 }
 
-bool SyncBuffer::take(ImuSample sample) {
+bool SyncBuffer::accept(ImuSample sample) {
   if (!is_sound(sample)) return false;
   if (is_set_back(imu_, sample)) {
     imu_.clear();
     heading_.restart();
   }
-  heading_.keep(sample);
+  heading_.correct(sample);
   return imu_.push(sample);
 }
 
-bool SyncBuffer::take(const EncoderSample& sample) {
+bool SyncBuffer::accept(const EncoderSample& sample) {
   if (!is_sound(sample)) return false;
   if (is_set_back(wheel_, sample)) wheel_.clear();
   return wheel_.push(sample);
 }
 
-/// Into the history; how many of them it refused.
+/// Moves a ring's samples into the history. @return how many of them it refused
 template <class Sample>
-std::uint64_t SyncBuffer::empty(Ring<Sample>& ring) {
+std::uint64_t SyncBuffer::drain(Ring<Sample>& ring) {
   std::uint64_t refused = 0;
   ring.samples.consume_all([&](const Sample& sample) {
     ring.depth.take();
-    refused += take(sample) ? 0 : 1;
+    refused += accept(sample) ? 0 : 1;
   });
   return refused;
 }
 
 void SyncBuffer::gather() {
-  late_.fetch_add(empty(imu_ring_) + empty(wheel_ring_), std::memory_order_relaxed);
+  late_.fetch_add(drain(imu_ring_) + drain(wheel_ring_), std::memory_order_relaxed);
 }
 
 bool SyncBuffer::covers(std::int64_t t_ns) const {
@@ -128,7 +128,7 @@ std::optional<WheelMotion> SyncBuffer::wheel_at(std::int64_t t_ns) const {
   };
   if (ends_at(wheel_, next)) {
     if (t_ns - before.t_ns > kSilenceNs) return std::nullopt;
-    // Over several samples, because a counter's steps are coarse.
+    // The speed is that over several samples, because a counter's steps are coarse.
     const std::size_t back = next >= 5 ? next - 5 : 0;
     const double last = back + 1 < next ? speed(wheel_[back], before) : 0;
     return WheelMotion{before.distance + last * seconds(t_ns - before.t_ns), last};

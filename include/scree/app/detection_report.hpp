@@ -21,7 +21,7 @@ struct MotionReport {
   double position_deviation = std::numeric_limits<double>::quiet_NaN();
   double yaw_deviation = std::numeric_limits<double>::quiet_NaN();
   std::uint64_t slips = 0;           ///< sweeps during which the wheel slipped
-  std::uint64_t heading_resets = 0;  ///< see HeadingWatch
+  std::uint64_t heading_resets = 0;  ///< see HeadingJumpFilter
 };
 
 /// What is reported beside the obstacle list of one sweep.

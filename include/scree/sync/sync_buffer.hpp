@@ -8,7 +8,7 @@
 #include "scree/core/encoder_sample.hpp"
 #include "scree/core/imu_sample.hpp"
 #include "scree/core/queue_depth.hpp"
-#include "scree/sync/heading_watch.hpp"
+#include "scree/sync/heading_jump_filter.hpp"
 #include "scree/sync/sample_history.hpp"
 
 namespace scree {
@@ -59,10 +59,10 @@ public:
   std::optional<Attitude> attitude_at(std::int64_t t_ns) const;
   std::optional<WheelMotion> wheel_at(std::int64_t t_ns) const;
 
-  /// The IMU's with a yaw that HeadingWatch keeps.
+  /// The IMU's with a yaw that HeadingJumpFilter keeps.
   const SampleHistory<ImuSample>& imu() const { return imu_; }
   const SampleHistory<EncoderSample>& wheel() const { return wheel_; }
-  const HeadingWatch& heading() const { return heading_; }
+  const HeadingJumpFilter& heading() const { return heading_; }
   /// Samples that found no room, and samples that gather() refused. Any thread.
   std::uint64_t dropped() const { return dropped_.load(std::memory_order_relaxed); }
   std::uint64_t late() const { return late_.load(std::memory_order_relaxed); }
@@ -83,15 +83,15 @@ private:
   template <class Sample>
   bool put(const Sample& sample, Ring<Sample>& ring);
   template <class Sample>
-  std::uint64_t empty(Ring<Sample>& ring);
-  bool take(ImuSample sample);
-  bool take(const EncoderSample& sample);
+  std::uint64_t drain(Ring<Sample>& ring);
+  bool accept(ImuSample sample);
+  bool accept(const EncoderSample& sample);
 
   Ring<ImuSample> imu_ring_;
   Ring<EncoderSample> wheel_ring_;
   SampleHistory<ImuSample> imu_{kHistory};
   SampleHistory<EncoderSample> wheel_{kHistory};
-  HeadingWatch heading_;
+  HeadingJumpFilter heading_;
   std::atomic<std::uint64_t> dropped_{0}, late_{0};
 };
 

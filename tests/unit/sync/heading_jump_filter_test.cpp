@@ -1,4 +1,4 @@
-#include "scree/sync/heading_watch.hpp"
+#include "scree/sync/heading_jump_filter.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ constexpr double kSeconds = 10;
 
 /// An IMU, mounted on its side, of a robot that winds its way over rough ground. Its gyroscope is
 /// off by 0.5 deg/s and 1 percent and has noise.
-class HeadingWatchTest : public testing::Test {
+class HeadingJumpFilterTest : public testing::Test {
 protected:
   static Eigen::Quaterniond truth(double t) {
     const Eigen::Quaterniond robot = from_roll_pitch_yaw(
@@ -42,7 +42,7 @@ protected:
       sample.rate = 1.01 * logarithm(truth(t - kStep).conjugate() * truth(t + kStep)) / (2 * kStep);
       sample.rate += Eigen::Vector3d(noise(random), noise(random) + 0.009, noise(random));
       fault(t, sample);
-      watch_.keep(sample);
+      filter_.correct(sample);
       off = logarithm(sample.orientation * truth(t).conjugate()).z();
       most_ = std::max(most_, std::abs(off));
     }
@@ -52,58 +52,58 @@ protected:
     sample.orientation = exponential({0, 0, yaw}) * sample.orientation;
   }
 
-  HeadingWatch watch_;
+  HeadingJumpFilter filter_;
   double interval_ = 0.01, most_ = 0;
   double silent_from_ = 99, silent_until_ = 99;
 };
 
-TEST_F(HeadingWatchTest, WhatTheRateKnowsOfIsBelieved) {
+TEST_F(HeadingJumpFilterTest, WhatTheRateKnowsOfIsBelieved) {
   for (const double interval : {0.01, 0.0025, 0.02}) {
     interval_ = interval;
-    watch_ = HeadingWatch();
+    filter_ = HeadingJumpFilter();
     EXPECT_EQ(left([](double, ImuSample&) {}), 0);
     EXPECT_LT(most_, 1e-9);
-    EXPECT_EQ(watch_.taken_out(), 0U) << interval;
+    EXPECT_EQ(filter_.corrections(), 0U) << interval;
   }
 }
 
-TEST_F(HeadingWatchTest, AResetOfTheHeadingIsTakenOut) {
+TEST_F(HeadingJumpFilterTest, AResetOfTheHeadingIsTakenOut) {
   for (const double degrees : {4.0, -5.0, 20.0, 179.0}) {
-    watch_ = HeadingWatch();
+    filter_ = HeadingJumpFilter();
     const double off = left([&](double t, ImuSample& sample) {
       if (t >= 4) turn(sample, radians(degrees));
     });
     EXPECT_LT(std::abs(off), radians(1)) << degrees;
-    EXPECT_EQ(watch_.taken_out(), 1U) << degrees;
+    EXPECT_EQ(filter_.corrections(), 1U) << degrees;
   }
 }
 
-TEST_F(HeadingWatchTest, OfASlowCorrectionLittleIsLeft) {
+TEST_F(HeadingJumpFilterTest, OfASlowCorrectionLittleIsLeft) {
   const double off = left([](double t, ImuSample& sample) {
     turn(sample, radians(6 * std::min(std::max(t - 4, 0.0), 3.0)));
   });
   EXPECT_LT(std::abs(off), radians(6)) << "of 18 degrees";
-  EXPECT_GT(watch_.taken_out(), 0U);
+  EXPECT_GT(filter_.corrections(), 0U);
 }
 
-TEST_F(HeadingWatchTest, AYawThatTremblesAndVibrationAreNoCorrections) {
+TEST_F(HeadingJumpFilterTest, AYawThatTremblesAndVibrationAreNoCorrections) {
   std::mt19937 random(6);
   std::normal_distribution<double> tremble(0, radians(0.2)), vibration(0, 0.5);
   left([&](double, ImuSample& sample) {
     turn(sample, tremble(random));
     sample.rate += Eigen::Vector3d(vibration(random), vibration(random), vibration(random));
   });
-  EXPECT_EQ(watch_.taken_out(), 0U);
+  EXPECT_EQ(filter_.corrections(), 0U);
 }
 
-TEST_F(HeadingWatchTest, AGarbledRateTurnsNothing) {
+TEST_F(HeadingJumpFilterTest, AGarbledRateTurnsNothing) {
   left([](double t, ImuSample& sample) {
     if (t > 4.995 && t < 5.005) sample.rate = {60, -60, 60};
   });
-  EXPECT_EQ(watch_.taken_out(), 0U);
+  EXPECT_EQ(filter_.corrections(), 0U);
 }
 
-TEST_F(HeadingWatchTest, WithoutRateAndAfterAPauseTheYawIsBelieved) {
+TEST_F(HeadingJumpFilterTest, WithoutRateAndAfterAPauseTheYawIsBelieved) {
   const auto reset = [](double t, ImuSample& sample) {
     if (t >= 4) turn(sample, 0.5);
   };
@@ -114,17 +114,17 @@ TEST_F(HeadingWatchTest, WithoutRateAndAfterAPauseTheYawIsBelieved) {
               0.5, 1e-9);
   silent_from_ = 3.5;
   silent_until_ = 4.5;
-  watch_ = HeadingWatch();
+  filter_ = HeadingJumpFilter();
   EXPECT_NEAR(left(reset), 0.5, 1e-9);
-  EXPECT_EQ(watch_.taken_out(), 0U);
+  EXPECT_EQ(filter_.corrections(), 0U);
 }
 
-TEST_F(HeadingWatchTest, ATiltIsNotItsBusiness) {
+TEST_F(HeadingJumpFilterTest, ATiltIsNotItsBusiness) {
   const double off = left([](double t, ImuSample& sample) {
     if (t >= 4) sample.orientation = exponential({0.2, 0, 0}) * sample.orientation;
   });
   EXPECT_LT(std::abs(off), 0.02);
-  EXPECT_EQ(watch_.taken_out(), 0U);
+  EXPECT_EQ(filter_.corrections(), 0U);
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ void warn_of_losses(Pipeline& pipeline, const WaitingSweeps& sweeps) {
        "sweeps during which the wheel slipped; it was not believed (in all of them: encoder.scale "
        "is wrong, or its sign)");
   warn("tracks", pipeline.tracker().dropped(), "found no room: raise memory.obstacles");
-  warn("IMU", pipeline.sensors().heading().taken_out(),
+  warn("IMU", pipeline.sensors().heading().corrections(),
        "turns of its yaw that its angular rate did not know of; they were not believed");
   warn("motion", pipeline.sensors().dropped(), "samples of IMU or encoder found no room");
   warn("motion", pipeline.sensors().late(),
