@@ -12,8 +12,8 @@ struct CanId {
   bool is_extended;
 };
 
-/// The real interface. @param only listen for this identifier (and for error frames); without it
-/// for all
+/// The real interface.
+/// @param only the identifier to listen for, beside error frames; without it all are heard
 CanSocket::Device can_device(const std::string& interface, std::optional<CanId> only);
 
 /// A socket that only sends on an interface.

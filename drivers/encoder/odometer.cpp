@@ -8,18 +8,19 @@
 namespace scree::encoder {
 namespace {
 
-constexpr double kJitter = 0.03;         // s, of a time stamp
-constexpr double kChangeOver = 0.1;      // s, a speed's change is judged over at least this
-constexpr double kLeastTrend = 0.05;     // s, a shorter past has no trend
+// The rules that these numbers belong to stand at the class.
+constexpr double kJitter = 0.03;      // s, of a time stamp: USB adapters hand frames on in bursts
+constexpr double kChangeOver = 0.1;   // s, a speed's change is judged over at least this
+constexpr double kLeastTrend = 0.05;  // s, a shorter past has no trend
 constexpr double kLeastToFreeze = 0.15;  // s, a shorter past does not tell the frames' interval
 constexpr double kRoomToBrake = 1.5;     // the interval is known to a fifth or so
 constexpr std::int64_t kPastNs = 250'000'000;
-constexpr std::size_t kLeastPast = 8;  // readings kept however old they are
-constexpr std::size_t kSteps = 4;      // that a reading must break off to be frozen
-constexpr std::int64_t kGapNs = 350'000'000;
-constexpr std::int64_t kFrozenNs = 1'000'000'000;
-constexpr int kSuspects = 4;
-constexpr std::int64_t kSuspectsNs = 50'000'000;
+constexpr std::size_t kLeastPast = 8;              // readings kept however old they are
+constexpr std::size_t kSteps = 4;                  // that a reading must break off to be frozen
+constexpr std::int64_t kGapNs = 350'000'000;       // more than three frames of the slowest encoder
+constexpr std::int64_t kFrozenNs = 1'000'000'000;  // a wheel that stands longer is blocked
+constexpr int kSuspects = 4;                       // refused readings that agree are right ...
+constexpr std::int64_t kSuspectsNs = 50'000'000;   // ... when they last this long
 
 double seconds(std::int64_t from_ns, std::int64_t to_ns) {
   return static_cast<double>(to_ns - from_ns) * 1e-9;

@@ -9,8 +9,9 @@ namespace {
 
 constexpr AzimuthTable kAzimuths;
 
-/// The motor turns at 300 to 1200 rpm: at most 0.8 degrees a block. Twice that is no rotation.
-constexpr int kMostStep = 160;
+/// The motor turns at 300 to 1200 rpm (63-9243 Rev. D), at most 0.8 degrees a block. Twice that is
+/// no rotation.
+constexpr int kMaxStep = 160;
 
 constexpr bool is_dual(ReturnMode mode) {
   return mode == ReturnMode::dual;
@@ -56,13 +57,13 @@ unsigned azimuth_of(Bytes packet, std::size_t block) {
 }
 
 /// From each block's azimuth to the next block's, in hundredths of a degree.
-struct Steps {
+struct AzimuthSteps {
   std::array<int, kBlocks> step{};
   int skipped = 0;
   int resumed_at = -1;  ///< azimuth behind the last jump
 
   /// Blocks that share their firings are `stride` apart.
-  Steps(const std::array<unsigned, kBlocks>& azimuth, std::size_t stride) {
+  AzimuthSteps(const std::array<unsigned, kBlocks>& azimuth, std::size_t stride) {
     constexpr int kNone = -1;
     int before = kNone;
     for (std::size_t block = 0; block < kBlocks; block += stride) {
@@ -71,7 +72,7 @@ struct Steps {
         const int from = static_cast<int>(azimuth[block]);
         const int to = static_cast<int>(azimuth[block + stride]);
         next = (to - from + kFullTurn) % kFullTurn;
-        if (next > kMostStep) {
+        if (next > kMaxStep) {
           skipped += next;
           resumed_at = to;
           next = kNone;
@@ -155,7 +156,7 @@ void PacketDecoder::decode(Bytes packet, Shots& shots) const {
   for (std::size_t block = 0; block < kBlocks; ++block) {
     azimuth[block] = azimuth_of(packet, dual ? block & ~std::size_t{1} : block);
   }
-  const Steps steps(azimuth, dual ? 2 : 1);
+  const AzimuthSteps steps(azimuth, dual ? 2 : 1);
   shots.skipped_deg = static_cast<float>(steps.skipped) / 100.0F;
   shots.resumed_at = static_cast<float>(steps.resumed_at);
   shots.degrees_per_block = static_cast<float>(steps.step[0]) / 100.0F;

@@ -40,10 +40,10 @@ void LidarStream::take(Bytes datagram, std::int64_t arrival_ns) {
   if (refusal != Refusal::none) return refuse(refusal);
   if (product(datagram) != Product::hdl32e) return accept(datagram, arrival_ns);
 
-  const Firmware firmware = judge_.judge(timestamp_us(datagram));
+  const Firmware firmware = firmware_detector_.update(timestamp_us(datagram));
   if (firmware == Firmware::undecided) return hold(datagram, arrival_ns);
   release(firmware == Firmware::early_vlp16);
-  if (firmware == Firmware::foreign) return refuse(Refusal::timing);
+  if (firmware == Firmware::hdl32e) return refuse(Refusal::timing);
   accept(datagram, arrival_ns);
 }
 
@@ -79,9 +79,9 @@ void LidarStream::accept(Bytes packet, std::int64_t arrival_ns) {
   const std::int64_t sent_ns = stamp_ns + packet_duration_ns(return_mode(packet));
 
   std::int64_t elapsed_ns = 0;
-  if (before_) {
+  if (previous_) {
     // Within half an hour around zero; how many hours went by is the clock's business.
-    elapsed_ns = (stamp_ns - before_->device_ns % kHourNs + kHourNs) % kHourNs;
+    elapsed_ns = (stamp_ns - previous_->device_ns % kHourNs + kHourNs) % kHourNs;
     if (elapsed_ns >= kHourNs / 2) elapsed_ns -= kHourNs;
     if (elapsed_ns == 0) return refuse(Refusal::duplicate);
     if (elapsed_ns < 0 && elapsed_ns > -kMostLateNs) return refuse(Refusal::late);
@@ -92,21 +92,21 @@ void LidarStream::accept(Bytes packet, std::int64_t arrival_ns) {
   counters_.host_steps = clock_.host_steps();
   if (started_over || elapsed_ns < 0) {
     builder_.finish();
-    before_.reset();
+    previous_.reset();
   }
 
   decoder_.decode(packet, shots_);
-  if (before_) count_lost(elapsed_ns);
-  const std::int64_t device_ns = before_ ? before_->device_ns + elapsed_ns : stamp_ns;
+  if (previous_) count_lost(elapsed_ns);
+  const std::int64_t device_ns = previous_ ? previous_->device_ns + elapsed_ns : stamp_ns;
   const std::int64_t host_ns = clock_.to_host(stamp_ns);
 
   std::int64_t duration_ns = packet_duration_ns(shots_.mode);
   if (shots_.skipped_deg > 0 && shots_.degrees_per_block > 0) {
     const float blocks_skipped = shots_.skipped_deg / shots_.degrees_per_block;
-    field_of_view_ = shots_.resumed_at;
+    field_of_view_begin_ = shots_.resumed_at;
     duration_ns += static_cast<std::int64_t>(blocks_skipped * static_cast<float>(kBlockNs));
   }
-  before_ = Before{device_ns, duration_ns};
+  previous_ = Previous{device_ns, duration_ns};
 
   ++counters_.by_mode[mode_index(shots_.mode)];
   if (on_packet_) on_packet_({counters_.accepted, host_ns, shots_});
@@ -116,12 +116,13 @@ void LidarStream::accept(Bytes packet, std::int64_t arrival_ns) {
 
 void LidarStream::count_lost(std::int64_t elapsed_ns) {
   if (elapsed_ns > kLongestGapNs) return;
-  const std::int64_t beyond_ns = elapsed_ns - before_->duration_ns;
+  const std::int64_t beyond_ns = elapsed_ns - previous_->duration_ns;
   const std::int64_t packet_ns = packet_duration_ns(shots_.mode);
   if (beyond_ns <= packet_ns / 2) return;
   // The sensor was silent outside its field of view, and this packet is the first inside.
   constexpr float kNear = 200;
-  if (field_of_view_ >= 0 && std::abs(shots_.azimuth[0] - field_of_view_) < kNear) return;
+  if (field_of_view_begin_ >= 0 && std::abs(shots_.azimuth[0] - field_of_view_begin_) < kNear)
+    return;
   counters_.lost += static_cast<std::uint64_t>((beyond_ns + packet_ns / 2) / packet_ns);
 }
 

@@ -8,11 +8,12 @@ namespace {
 
 constexpr float kFull = kFullTurn;
 
-/// An azimuth wavers by hundredths of a degree from shot to shot; a step back by more than this
-/// means that the sensor turned on past the cut.
+/// The azimuth jitters by hundredths of a degree from shot to shot; a step back by more than this
+/// means that the sensor turned on past the cut. Hundredths of a degree.
 constexpr float kStepBack = 500;
 
-/// Between two cuts lies a turn, of 50 ms at least. One sooner is that wavering, at the cut.
+/// Between two cuts lies a turn, of 50 ms at least (1200 rpm). One sooner is that jitter, at the
+/// cut.
 constexpr std::int64_t kShortestTurnNs = 20'000'000;
 
 }  // namespace

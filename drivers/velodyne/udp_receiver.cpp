@@ -12,8 +12,8 @@
 namespace scree {
 namespace {
 
-// Two seconds of a VLP-16 in dual-return mode (1508 packets a second, each 2304 bytes in the
-// kernel).
+// Two seconds of a VLP-16 with dual returns: 1508 packets a second (63-9243 Rev. D), each of which
+// takes 2304 bytes in the kernel.
 constexpr int kWantedBuffer = 8 << 20;
 
 std::string reason_of(int error, const std::string& address, int port) {

@@ -12,8 +12,7 @@ namespace {
 constexpr std::int64_t kReopenAfter = kSecond / 2;
 /// ... and to start an MTi that did not answer or refused.
 constexpr std::int64_t kRestartAfter = 2 * kSecond;
-/// A device without data for so long is started anew: it may have lost its power meanwhile, or be
-/// another one.
+/// A device without data for so long is started anew: it may have lost its power, or be another.
 constexpr std::int64_t kSilence = 2 * kSecond;
 
 }  // namespace

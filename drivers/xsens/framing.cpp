@@ -7,26 +7,26 @@
 namespace scree::xsens {
 namespace {
 
-enum class Verdict : std::uint8_t { whole, incomplete, foreign, checksum, length };
+enum class FrameStatus : std::uint8_t { whole, incomplete, no_message, checksum, length };
 
-/// What begins with the first of these bytes, of which there is one at least.
-std::pair<Verdict, Message> look_at(Bytes bytes) {
-  if (bytes[0] != kPreamble) return {Verdict::foreign, {}};
-  if (bytes.size() > 1 && bytes[1] != kMasterDevice) return {Verdict::foreign, {}};
-  if (bytes.size() < kShortHeader) return {Verdict::incomplete, {}};
+/// The message that begins with the first byte, if it does. @pre one byte at least
+std::pair<FrameStatus, Message> parse_frame(Bytes bytes) {
+  if (bytes[0] != kPreamble) return {FrameStatus::no_message, {}};
+  if (bytes.size() > 1 && bytes[1] != kMasterDevice) return {FrameStatus::no_message, {}};
+  if (bytes.size() < kShortHeader) return {FrameStatus::incomplete, {}};
   const bool extended = bytes[3] == kExtendedLength;
   const std::size_t header = extended ? kExtendedHeader : kShortHeader;
-  if (bytes.size() < header) return {Verdict::incomplete, {}};
+  if (bytes.size() < header) return {FrameStatus::incomplete, {}};
   const std::size_t length = extended ? read<std::uint16_t>(bytes, kShortHeader) : bytes[3];
-  if (length > kLongestData) return {Verdict::length, {}};
+  if (length > kLongestData) return {FrameStatus::length, {}};
   const std::size_t size = header + length + 1;
-  if (bytes.size() < size) return {Verdict::incomplete, {}};
+  if (bytes.size() < size) return {FrameStatus::incomplete, {}};
   if (std::accumulate(bytes.begin() + 1, bytes.begin() + static_cast<std::ptrdiff_t>(size), 0U) %
           0x100U !=
       0) {
-    return {Verdict::checksum, {}};
+    return {FrameStatus::checksum, {}};
   }
-  return {Verdict::whole,
+  return {FrameStatus::whole,
           {static_cast<MessageId>(bytes[2]), bytes.subspan(header, length), size, 0}};
 }
 
@@ -64,15 +64,15 @@ void Framer::skip(std::size_t bytes) {
 Message Framer::next(bool at_end) {
   while (begin_ < end_) {
     const Bytes waiting = Bytes(held_).subspan(begin_, end_ - begin_);
-    const auto [verdict, message] = look_at(waiting);
-    if (verdict == Verdict::whole) {
+    const auto [status, message] = parse_frame(waiting);
+    if (status == FrameStatus::whole) {
       begin_ += message.size;
       ++counters_.messages;
       return message;
     }
-    if (verdict == Verdict::incomplete && !at_end) break;
-    if (verdict == Verdict::checksum) ++counters_.checksum;
-    if (verdict == Verdict::length) ++counters_.length;
+    if (status == FrameStatus::incomplete && !at_end) break;
+    if (status == FrameStatus::checksum) ++counters_.checksum;
+    if (status == FrameStatus::length) ++counters_.length;
     const auto next_preamble = std::find(waiting.begin() + 1, waiting.end(), kPreamble);
     skip(static_cast<std::size_t>(next_preamble - waiting.begin()));
   }

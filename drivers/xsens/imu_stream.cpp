@@ -17,7 +17,7 @@ constexpr int kMostLateMessages = 100;
 constexpr std::int32_t kMostLateTicks = 10'000;
 
 /// After this the packet counter may have wrapped: nothing is compared with what was before.
-constexpr std::int64_t kLongestGap = 15 * kSecond;
+constexpr std::int64_t kLongestGap = 15 * kSecond;  // 2^15 messages at 2000 a second: 16 s
 
 /// No MTi sends more messages in so long, and a burst of those that waited: a counter that went on
 /// by more has started over, or is garbled.
@@ -118,7 +118,7 @@ void ImuStream::take_message(const Message& message, std::int64_t arrival_ns) {
   if (items_.decoded == decoded) return refuse(Refusal::empty);
   // One in 256 garbled messages has a right checksum.
   if (!is_plausible(to_sample(measurement, 0))) return refuse(Refusal::implausible);
-  const Refusal refusal = judge(measurement, arrival_ns);
+  const Refusal refusal = check_sequence(measurement, arrival_ns);
   if (refusal != Refusal::none) return refuse(refusal);
   last_arrival_ns_ = arrival_ns;
   ++counters_.accepted;
@@ -130,7 +130,7 @@ void ImuStream::take_message(const Message& message, std::int64_t arrival_ns) {
   if (on_measurement_) on_measurement_(clock_.host_time(measurement, arrival), measurement);
 }
 
-Refusal ImuStream::judge(const Measurement& measurement, std::int64_t arrival_ns) {
+Refusal ImuStream::check_sequence(const Measurement& measurement, std::int64_t arrival_ns) {
   if (arrival_ns - last_arrival_ns_ > kLongestGap) {
     last_counter_.reset();
     last_tick_.reset();

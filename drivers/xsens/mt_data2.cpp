@@ -155,12 +155,11 @@ Refusal device_id(const Item& item, std::optional<std::uint64_t>& out) {
   return refusal;
 }
 
-/// Nothing when the id is unknown.
-std::optional<Refusal> decode(const Item& item, Measurement& out) {
-  constexpr std::uint16_t kTypeBits = 0xFFF0;
-  switch (static_cast<DataId>(item.id & kTypeBits)) {
-    case DataId::temperature:
-      return real(item, out.temperature);
+// The items by their groups. Nothing where the id is none of the group.
+
+/// Time stamps and counters (group 0x10).
+std::optional<Refusal> decode_time(DataId id, const Item& item, Measurement& out) {
+  switch (id) {
     case DataId::utc_time:
       return utc_time(item, out.utc_time);
     case DataId::packet_counter:
@@ -181,14 +180,21 @@ std::optional<Refusal> decode(const Item& item, Measurement& out) {
       return integer(item, out.packet_counter8);
     case DataId::sample_time64:
       return integer(item, out.sample_time64);
+    default:
+      return std::nullopt;
+  }
+}
+
+/// Orientation, acceleration, rate of turn, magnetic field and velocity (groups 0x20, 0x40, 0x80,
+/// 0xC0, 0xD0).
+std::optional<Refusal> decode_inertial(DataId id, const Item& item, Measurement& out) {
+  switch (id) {
     case DataId::quaternion:
       return rotation(item, out.quaternion);
     case DataId::rotation_matrix:
       return rotation(item, out.rotation_matrix);
     case DataId::euler_angles:
       return real(item, out.euler_angles);
-    case DataId::baro_pressure:
-      return integer(item, out.baro_pressure);
     case DataId::delta_v:
       return real(item, out.delta_v);
     case DataId::acceleration:
@@ -197,12 +203,26 @@ std::optional<Refusal> decode(const Item& item, Measurement& out) {
       return real(item, out.free_acceleration);
     case DataId::acceleration_hr:
       return real(item, out.acceleration_hr);
-    case DataId::trigger_in1:
-      return trigger(item, out.trigger_in[0]);
-    case DataId::trigger_in2:
-      return trigger(item, out.trigger_in[1]);
-    case DataId::trigger_in3:
-      return trigger(item, out.trigger_in[2]);
+    case DataId::rate_of_turn:
+      return real(item, out.rate_of_turn);
+    case DataId::delta_q:
+      return rotation(item, out.delta_q);
+    case DataId::rate_of_turn_hr:
+      return real(item, out.rate_of_turn_hr);
+    case DataId::magnetic_field:
+      return real(item, out.magnetic_field);
+    case DataId::magnetic_field_corrected:
+      return real(item, out.magnetic_field_corrected);
+    case DataId::velocity:
+      return real(item, out.velocity);
+    default:
+      return std::nullopt;
+  }
+}
+
+/// Position and GNSS (groups 0x50 and 0x70).
+std::optional<Refusal> decode_position(DataId id, const Item& item, Measurement& out) {
+  switch (id) {
     case DataId::altitude_msl:
       return real(item, out.altitude_msl);
     case DataId::altitude_ellipsoid:
@@ -217,12 +237,24 @@ std::optional<Refusal> decode(const Item& item, Measurement& out) {
       return gnss_sat_info(item, out.gnss_sat_info);
     case DataId::gnss_pvt_pulse:
       return integer(item, out.gnss_pvt_pulse);
-    case DataId::rate_of_turn:
-      return real(item, out.rate_of_turn);
-    case DataId::delta_q:
-      return rotation(item, out.delta_q);
-    case DataId::rate_of_turn_hr:
-      return real(item, out.rate_of_turn_hr);
+    default:
+      return std::nullopt;
+  }
+}
+
+/// Temperature, pressure, triggers, raw values and status (the other groups).
+std::optional<Refusal> decode_other(DataId id, const Item& item, Measurement& out) {
+  switch (id) {
+    case DataId::temperature:
+      return real(item, out.temperature);
+    case DataId::baro_pressure:
+      return integer(item, out.baro_pressure);
+    case DataId::trigger_in1:
+      return trigger(item, out.trigger_in[0]);
+    case DataId::trigger_in2:
+      return trigger(item, out.trigger_in[1]);
+    case DataId::trigger_in3:
+      return trigger(item, out.trigger_in[2]);
     case DataId::raw_acc_gyr_mag_temp:
       return raw_sample(item, out.raw_sample);
     case DataId::raw_gyro_temp:
@@ -231,12 +263,6 @@ std::optional<Refusal> decode(const Item& item, Measurement& out) {
       return integer(item, out.analog_in[0]);
     case DataId::analog_in2:
       return integer(item, out.analog_in[1]);
-    case DataId::magnetic_field:
-      return real(item, out.magnetic_field);
-    case DataId::magnetic_field_corrected:
-      return real(item, out.magnetic_field_corrected);
-    case DataId::velocity:
-      return real(item, out.velocity);
     case DataId::status_byte:
       return integer(item, out.status_byte);
     case DataId::status_word:
@@ -247,8 +273,19 @@ std::optional<Refusal> decode(const Item& item, Measurement& out) {
       return device_id(item, out.device_id);
     case DataId::location_id:
       return integer(item, out.location_id);
+    default:
+      return std::nullopt;
   }
-  return std::nullopt;
+}
+
+/// Nothing when the id is unknown.
+std::optional<Refusal> decode(const Item& item, Measurement& out) {
+  constexpr std::uint16_t kTypeBits = 0xFFF0;
+  const auto id = static_cast<DataId>(item.id & kTypeBits);
+  if (const auto refusal = decode_inertial(id, item, out)) return refusal;
+  if (const auto refusal = decode_time(id, item, out)) return refusal;
+  if (const auto refusal = decode_position(id, item, out)) return refusal;
+  return decode_other(id, item, out);
 }
 
 }  // namespace

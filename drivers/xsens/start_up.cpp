@@ -12,7 +12,7 @@ struct BaudCode {
   int baud;
   std::uint8_t code;
 };
-/// Of SetBaudrate, those first that devices are found at most often.
+/// The codes of SetBaudrate (MT0101P), the most usual bit rates first.
 constexpr std::array<BaudCode, 13> kBaudCodes = {{{115200, 0x02},
                                                   {921600, 0x0A},
                                                   {460800, 0x00},
@@ -34,7 +34,7 @@ std::optional<std::uint8_t> code_of(int baud) {
   return std::nullopt;
 }
 
-/// Section "Error codes".
+/// What an error code says (MT0101P, section "Error codes").
 const char* meaning_of(int code) {
   switch (code) {
     case 3:

@@ -200,7 +200,7 @@ void HealthWatch::say_first_packets(const LidarStatus& lidar) {
     said_packet_ = true;
   }
   if (lidar.firmware != said_firmware_) {
-    say(lidar.firmware == velodyne::Firmware::foreign, std::string(sentence(lidar.firmware)));
+    say(lidar.firmware == velodyne::Firmware::hdl32e, std::string(sentence(lidar.firmware)));
     said_firmware_ = lidar.firmware;
   }
 }

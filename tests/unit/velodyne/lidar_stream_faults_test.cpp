@@ -129,7 +129,7 @@ TEST(LidarStreamFaults, AnHdl32eIsRefusedAltogether) {
     const PacketBuilder packet = sensor.packet().timestamp(stamp);
     if (i % 7 != 1) sensor.stream().take(packet.bytes(), kEpoch + stamp * 1000LL);
   }
-  EXPECT_EQ(sensor.stream().firmware(), Firmware::foreign);
+  EXPECT_EQ(sensor.stream().firmware(), Firmware::hdl32e);
   EXPECT_EQ(sensor.counters().accepted, 0U);
   EXPECT_EQ(sensor.refused(Refusal::timing), 86U - 1U);
 }

@@ -76,7 +76,7 @@ TEST(Recordings, AnotherSensorIsRefusedWhole) {
   const Played played = play("vlp16/not_a_vlp16.pcap");
   EXPECT_EQ(played.counters.accepted, 0U);
   EXPECT_EQ(played.counters.refused[static_cast<std::size_t>(Refusal::timing)], 91U);
-  EXPECT_EQ(played.firmware, Firmware::foreign);
+  EXPECT_EQ(played.firmware, Firmware::hdl32e);
   EXPECT_TRUE(played.sweep_ends_ns.empty());
 }
 

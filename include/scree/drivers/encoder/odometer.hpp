@@ -56,7 +56,7 @@ private:
   double moved(const Reading& from, const Reading& to) const;
   /// Whether a wheel can be the cause of both, whatever it did before.
   bool agree(const Reading& from, const Reading& to) const;
-  /// Over the accepted readings of the last 250 ms; nothing where these are too few.
+  /// The mean speed over the accepted readings of the last 250 ms; nothing where these are too few.
   struct Trend {
     double window, speed;  ///< seconds, m/s
   };

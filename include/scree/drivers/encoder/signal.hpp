@@ -13,7 +13,7 @@ namespace scree::encoder {
 /// - lowest bit, little_endian ("Intel", @1): the signal runs upwards from there;
 /// - highest bit, big_endian ("Motorola", @0): it runs down to bit 0 of that byte and on from bit 7
 ///   of the next.
-/// Of an unsigned signal of 64 bits it gives the same bits. Nothing where the data end before the
+/// An unsigned signal of 64 bits keeps its bits. Nothing where the data end before the
 /// signal does. @pre length is 1 to 64
 std::optional<std::int64_t> read_signal(const EncoderSettings& layout,
                                         std::span<const std::uint8_t> data);

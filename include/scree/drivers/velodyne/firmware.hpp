@@ -8,11 +8,11 @@
 
 namespace scree::velodyne {
 
-/// What sensor writes product byte 0x21.
+/// Which sensor writes product byte 0x21.
 enum class Firmware : std::uint8_t {
   undecided,
   early_vlp16,  ///< a VLP-16 or Puck LITE with early firmware
-  foreign       ///< an HDL-32E, whose byte it is
+  hdl32e        ///< an HDL-32E, whose byte it is
 };
 
 /// For the log; empty while undecided.
@@ -21,10 +21,10 @@ std::string_view sentence(Firmware firmware);
 /// Tells the two apart by the time between packets that follow each other: 1327 us (dual returns:
 /// 664) of a VLP-16, 553 us (276) of an HDL-32E. Times that are none of these (a packet was lost)
 /// decide nothing. Once decided, it takes many packets of the other kind in a row to change it.
-class FirmwareJudge {
+class FirmwareDetector {
 public:
   /// Takes the time stamp of the next packet with that byte.
-  Firmware judge(std::uint32_t timestamp_us);
+  Firmware update(std::uint32_t timestamp_us);
   Firmware firmware() const { return firmware_; }
 
 private:

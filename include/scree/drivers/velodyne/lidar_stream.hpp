@@ -59,7 +59,7 @@ public:
   /// How long there has been no return in what the sensor sent.
   std::int64_t without_return_ns() const { return builder_.without_return_ns(); }
   /// Whether product byte 0x21 was seen and what it turned out to be; see sentence().
-  Firmware firmware() const { return judge_.firmware(); }
+  Firmware firmware() const { return firmware_detector_.firmware(); }
   /// The host's time of an edge of the pulse per second that the sensor is locked to.
   void pps(std::int64_t host_edge_ns) { clock_.pps(host_edge_ns); }
   const DeviceClock& clock() const { return clock_; }
@@ -70,7 +70,7 @@ private:
     std::int64_t arrival_ns;
   };
   /// What the next packet is compared with.
-  struct Before {
+  struct Previous {
     std::int64_t device_ns;    ///< does not wrap
     std::int64_t duration_ns;  ///< until the next packet's time stamp, when none is lost
   };
@@ -87,12 +87,13 @@ private:
   OnPacket on_packet_;
   SweepBuilder builder_;
   DeviceClock clock_{kHourNs};
-  FirmwareJudge judge_;
+  FirmwareDetector firmware_detector_;
   std::array<Held, 32> held_{};  ///< packets with product byte 0x21 until it is decided
   std::size_t held_count_ = 0;
-  std::optional<Before> before_;
-  float field_of_view_ =
-      -1;  ///< azimuth where one set in the sensor begins; hundredths of a degree
+  std::optional<Previous> previous_;
+  /// Azimuth where the field of view that is set in the sensor begins, hundredths of a degree; -1
+  /// where none is known.
+  float field_of_view_begin_ = -1;
   Shots shots_;
   LidarCounters counters_;
 };

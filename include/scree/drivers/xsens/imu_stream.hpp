@@ -56,8 +56,8 @@ public:
 
 private:
   void take_message(const Message& message, std::int64_t arrival_ns);
-  /// Whether a message comes in its turn, and how many are missing before it.
-  Refusal judge(const Measurement& measurement, std::int64_t arrival_ns);
+  /// Whether a message is in sequence; sets how many are missing before it.
+  Refusal check_sequence(const Measurement& measurement, std::int64_t arrival_ns);
   void take_inertial(const Measurement& measurement, const Arrival& arrival);
   std::int64_t increment_interval(const Measurement& measurement, std::int64_t elapsed_ns);
   void hand_out(const Measurement& measurement, std::int64_t t_ns, std::int64_t interval_ns);
@@ -71,14 +71,12 @@ private:
   SampleClock clock_;
   RefusalCounts refused_{};  ///< whole messages, after framing
   std::optional<std::uint16_t> last_counter_;
-  std::optional<std::uint32_t> last_tick_;  ///< of the last sample
-  std::int64_t last_arrival_ns_ = 0;        ///< of the last accepted message
-  std::int64_t missing_ = 0;                ///< messages lost just before this one
-  std::optional<std::int64_t> last_t_ns_;   ///< of the last sample
-  /// Device time since the last message with increments, where it is known, and messages lost
-  /// since.
-  std::optional<std::int64_t> increment_ns_;
-  std::int64_t increments_lost_ = 0;
+  std::optional<std::uint32_t> last_tick_;    ///< of the last sample
+  std::int64_t last_arrival_ns_ = 0;          ///< of the last accepted message
+  std::int64_t missing_ = 0;                  ///< messages lost just before this one
+  std::optional<std::int64_t> last_t_ns_;     ///< of the last sample
+  std::optional<std::int64_t> increment_ns_;  ///< device time since the last increments, if known
+  std::int64_t increments_lost_ = 0;          ///< messages lost since then
   ImuCounters counters_;
 };
 

@@ -19,8 +19,7 @@ enum class Refusal : std::uint8_t {
   empty,       ///< message: MTData2 without any item that could be used
   duplicate,   ///< message: the packet counter or sample time of the message before it
   late,        ///< message: older than the message before it
-  implausible  ///< message: its rate or acceleration is beyond any IMU, so its bytes are not its
-               ///< own
+  implausible  ///< message: garbled, for no IMU measures its rate or acceleration
 };
 inline constexpr std::size_t kRefusals = 11;
 using RefusalCounts = std::array<std::uint64_t, kRefusals>;  ///< by Refusal; [none] stays 0

@@ -43,9 +43,9 @@ public:
   /// Host time of a message that is no sample and may be older than the last one.
   std::int64_t host_time(const Measurement& message, const Arrival& arrival) const;
 
-  /// Of the device time in use; not started where messages are stamped by arrival.
+  /// The clock of the device time in use; not started where messages are stamped by arrival.
   const DeviceClock& clock() const { return clock_; }
-  /// Of all device times taken up so far; see DeviceClock.
+  /// Summed over all device times taken up so far; see DeviceClock.
   std::uint64_t device_restarts() const { return restarts_before_ + clock_.device_restarts(); }
   std::uint64_t host_steps() const { return steps_before_ + clock_.host_steps(); }
 
