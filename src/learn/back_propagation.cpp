@@ -23,13 +23,13 @@ VectorXd gradient(const Network& network, std::span<const Sample> samples) {
 TrainingResult train_back_propagation(Network& network, std::span<const Sample> training,
                                       std::span<const Sample> validation,
                                       const BackPropagationSettings& settings) {
-  const auto judged = validation.empty() ? training : validation;
+  const auto held_out = validation.empty() ? training : validation;
   const auto weights = network.weights();
   std::vector<double> best(weights.begin(), weights.end());
   VectorXd step = VectorXd::Zero(static_cast<Eigen::Index>(weights.size()));
   TrainingResult result;
   result.curve.push_back(
-      {mean_squared_error(network, training), mean_squared_error(network, judged), 0});
+      {mean_squared_error(network, training), mean_squared_error(network, held_out), 0});
   for (int i = 0; i < settings.iterations; ++i) {
     step = settings.momentum * step - settings.rate * gradient(network, training);
     for (std::size_t w = 0; w < weights.size(); ++w) {
@@ -37,7 +37,7 @@ TrainingResult train_back_propagation(Network& network, std::span<const Sample> 
       weights[w] = std::clamp(moved, -Network::kMaxWeight, Network::kMaxWeight);
     }
     result.curve.push_back(
-        {mean_squared_error(network, training), mean_squared_error(network, judged), 0});
+        {mean_squared_error(network, training), mean_squared_error(network, held_out), 0});
     if (result.curve.back().validation_error >= result.curve[result.best].validation_error)
       continue;
     result.best = result.curve.size() - 1;

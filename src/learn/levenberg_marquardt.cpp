@@ -140,11 +140,11 @@ double mean_squared_error(const Network& network, std::span<const Sample> sample
 TrainingResult train_levenberg_marquardt(Network& network, std::span<const Sample> training,
                                          std::span<const Sample> validation,
                                          const LevenbergMarquardtSettings& settings) {
-  const auto judged = validation.empty() ? training : validation;
+  const auto held_out = validation.empty() ? training : validation;
   double damping = settings.damping;
   TrainingResult result;
   result.curve.push_back(
-      {mean_squared_error(network, training), mean_squared_error(network, judged), damping});
+      {mean_squared_error(network, training), mean_squared_error(network, held_out), damping});
   VectorXd best = weights_of(network);
   int idle = 0;
   int worse = 0;
@@ -155,7 +155,7 @@ TrainingResult train_levenberg_marquardt(Network& network, std::span<const Sampl
       break;
     }
     result.curve.push_back(
-        {mean_squared_error(network, training), mean_squared_error(network, judged), damping});
+        {mean_squared_error(network, training), mean_squared_error(network, held_out), damping});
     const TrainingStep& now = result.curve.back();
     idle = now.training_error < error * (1 - settings.least_gain) ? 0 : idle + 1;
     if (now.validation_error < result.curve[result.best].validation_error) {

@@ -106,8 +106,8 @@ void PoseFilter::predict(const MotionStep& step) {
   pose_.rotation = (level_ * attitude_).normalized();
 }
 
-/// Keeps what was known of the level frame when the IMU fell silent, and realigns the frame when it
-/// speaks again.
+/// Keeps what was known of the level frame when the IMU falls silent. Realigns the frame when the
+/// IMU speaks again.
 void PoseFilter::watch_silence(const MotionStep& step) {
   if (knew_attitude_ && !step.knows_attitude) {
     level_before_ = level_;

@@ -117,8 +117,7 @@ void RollingMap::add_hit(MapVoxel& voxel, const Eigen::Vector3f& point, const De
   voxel.beams.scatter += sweep.scatter[index];
 }
 
-/// Beams without return count where they went up: downwards lies ground that was too dark or too
-/// far.
+/// Beams without return count where they went up: below lies ground that was too dark or too far.
 void RollingMap::trace_rays(const DeskewedSweep& sweep, const Eigen::Matrix3f& rotation,
                             const Eigen::Vector3f& translation, float reach) {
   for (std::size_t i = sweep_ % kRayStride; i < sweep.points.size(); i += kRayStride) {
@@ -182,8 +181,7 @@ Occupancy RollingMap::occupancy_at(const Eigen::Vector3d& point) const {
   return is_free ? Occupancy::free : Occupancy::unknown;
 }
 
-/// Removes what lies too far off, what has moved away, what is too old and what was never
-/// confirmed.
+/// Removes what is too far off, what has moved away, what is too old, what was never confirmed.
 void RollingMap::prune(const Pose& pose) {
   constexpr std::uint32_t kConfirmWithin = 30;  // sweeps
   const Eigen::Vector3f robot = (pose.translation - origin_).cast<float>();

@@ -48,7 +48,7 @@ protected:
       farthest_jump_ = std::max(farthest_jump_, std::abs(way - step.displacement.norm()));
     }
   }
-  /// Of the map's vertical in `odom`, as the truth has it.
+  /// The lean of the map's vertical in `odom`, as the truth has it.
   double lean_left() const {
     return (levelling_.to_odom().rotation * lean_ * Eigen::Vector3d::UnitZ()).head<2>().norm();
   }

@@ -59,7 +59,7 @@ double mean_of(const std::vector<float>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-/// Of a wall 3 m ahead whose normal lies turned aside.
+/// The ranges of a wall 3 m ahead whose normal lies turned aside.
 std::vector<double> wall(double turned_deg) {
   std::vector<double> ranges;
   for (int i = -20; i <= 20; ++i) {

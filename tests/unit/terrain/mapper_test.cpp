@@ -58,7 +58,7 @@ protected:
     ASSERT_TRUE(mapper_->filter().covariance().allFinite());
     ASSERT_NEAR(mapper_->pose().rotation.norm(), 1, 1e-6);
   }
-  /// Of the pose, from the end of the first sweep on.
+  /// The pose's error, from the end of the first sweep on.
   Pose error() const { return test::relative(truth(), mapper_->pose()); }
   Pose truth() const {
     // Where the drive begins lies the origin of both, but for the way of the first sweep.
