@@ -1,0 +1,62 @@
+#include "scree/terrain/voxel_hash_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <random>
+#include <tuple>
+
+namespace scree {
+namespace {
+
+using Reference = std::map<std::tuple<int, int, int>, std::uint16_t>;
+
+void expect_same(const VoxelHashMap& map, const Reference& reference) {
+  ASSERT_EQ(map.size(), reference.size());
+  for (const auto& [key, hits] : reference) {
+    const auto [x, y, z] = key;
+    const VoxelKey voxel{static_cast<std::int16_t>(x), static_cast<std::int16_t>(y),
+                         static_cast<std::int16_t>(z)};
+    ASSERT_NE(map.find(voxel), nullptr);
+    EXPECT_EQ(map.find(voxel)->hits, hits);
+    EXPECT_FALSE(map.is_block_empty(voxel));
+  }
+}
+
+TEST(VoxelHashMap, HoldsWhatAPlainMapHolds) {
+  std::mt19937 random(3);
+  std::uniform_int_distribution<int> number(-20, 20), choice(0, 99);
+  VoxelHashMap map(500);
+  Reference reference;
+  for (int i = 0; i < 20'000; ++i) {
+    const int x = number(random), y = number(random), z = number(random) / 8;
+    const VoxelKey key = VoxelKey().shifted(x, y, z);
+    if (choice(random) < 40 && map.size() > 0) {
+      const std::size_t index = random() % map.size();
+      const VoxelKey& erased = map[index].key;
+      reference.erase({erased.x, erased.y, erased.z});
+      map.erase(index);
+    } else if (MapVoxel* const voxel = map.find_or_add(key); voxel != nullptr) {
+      reference[{x, y, z}] = ++voxel->hits;
+    } else {
+      EXPECT_EQ(map.size(), map.capacity());
+      EXPECT_FALSE(reference.contains({x, y, z}));
+    }
+  }
+  expect_same(map, reference);
+
+  map.shift(100, -1000, 7);
+  Reference shifted;
+  for (const auto& [key, hits] : reference) {
+    const auto [x, y, z] = key;
+    shifted[{x + 100, y - 1000, z + 7}] = hits;
+  }
+  expect_same(map, shifted);
+
+  map.clear();
+  expect_same(map, {});
+  EXPECT_TRUE(map.is_block_empty({100, -1000, 7}));
+}
+
+}  // namespace
+}  // namespace scree
