@@ -11,8 +11,7 @@
 
 namespace scree {
 
-/// Sums up how the daemon's own work goes, for health: how long it takes, and what found no room.
-/// One thread may use it.
+/// Sums up for health how long detection takes, and what found no room. One thread may use it.
 class DetectionStatistics {
 public:
   /// A list was published.

@@ -40,9 +40,9 @@ void EncoderReader::open() {
   }
   status_.bus = encoder::BusState::absent;
   shared_status_.put(status_);
-  if (opened.error().message == said_) return;
-  said_ = opened.error().message;
-  spdlog::warn("encoder: {}", said_);
+  if (opened.error().message == logged_problem_) return;
+  logged_problem_ = opened.error().message;
+  spdlog::warn("encoder: {}", logged_problem_);
 }
 
 void EncoderReader::read() {
@@ -57,11 +57,11 @@ void EncoderReader::read() {
   }
   socket_->retry(steady_ns());
   status_.socket = socket_->counts();
-  say_bus(socket_->state());
+  update_bus(socket_->state());
   shared_status_.put(status_);
 }
 
-void EncoderReader::say_bus(encoder::BusState state) {
+void EncoderReader::update_bus(encoder::BusState state) {
   if (state == status_.bus) return;
   status_.bus = state;
   const auto index = static_cast<std::size_t>(state);

@@ -35,7 +35,7 @@ public:
 private:
   void open();
   void read();
-  void say_bus(encoder::BusState state);
+  void update_bus(encoder::BusState state);
 
   EncoderSettings settings_;
   std::optional<encoder::CanSocket> socket_;
@@ -43,7 +43,7 @@ private:
   HostClock clock_;
   EncoderStatus status_;
   TripleBuffer<EncoderStatus> shared_status_;
-  std::string said_;
+  std::string logged_problem_;
   LoopCounter loops_;
   Event stop_;
 };

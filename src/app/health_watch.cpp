@@ -20,7 +20,7 @@ std::string modes_of(const velodyne::LidarCounters& counters) {
   return modes;
 }
 
-/// Adds what a decoder has refused, but for [none].
+/// Adds the counts of what a decoder has refused, without that of [none].
 template <class Names, class Reasons, class Counts>
 void add_refused(const Names& names, const Reasons& reasons, const Counts& counts,
                  SensorStatus& status) {
@@ -59,15 +59,15 @@ bool HealthWatch::update(std::int64_t now_ns, const LidarStatus& lidar, const Im
   log_.clear();
   const std::int8_t before = health.state;
   const std::string reason_before = health.reason;
-  say_first_packets(lidar);
-  say_pulses(lidar);
+  log_first_packets(lidar);
+  log_pulses(lidar);
   const bool has_changed = update_sensors(now_ns, lidar, imu, encoder, health);
 
   health.reason = blind_reason(now_ns, lidar, health.lidar.state, detector);
   const bool sees = health.reason.empty();
   health.state = sees ? health_t::OK : health_t::BLIND;
-  if (health.state != before) say_sight(now_ns, health.reason);
-  say_losses(now_ns, lidar, detector);
+  if (health.state != before) log_sight(now_ns, health.reason);
+  log_losses(now_ns, lidar, detector);
   return has_changed || health.reason != reason_before;
 }
 
@@ -129,7 +129,7 @@ SensorStatus HealthWatch::status_of(const EncoderStatus& encoder) const {
   return status;
 }
 
-/// Empty when the robot sees.
+/// Why the robot is blind; empty when it sees.
 std::string HealthWatch::blind_reason(std::int64_t now_ns, const LidarStatus& lidar,
                                       std::int8_t state, const DetectorStatus& detector) const {
   switch (state) {
@@ -149,25 +149,24 @@ std::string HealthWatch::blind_reason(std::int64_t now_ns, const LidarStatus& li
   if (lidar.last_sweep_ns == 0) return "the lidar has not made a whole turn yet";
   if (lidar.last_packet_ns - lidar.last_sweep_ns > kTurnStops)
     return "the lidar makes no whole turns: does it turn?";
-  if (now_ns - detector.last_round_ns > kDetectorStops) return "the detector is late";
+  if (now_ns - detector.last_loop_ns > kDetectorStops) return "the detector is late";
   if (detector.last_list_ns == 0) return "no sweep has got through the detector yet";
   if (now_ns - detector.last_list_ns > kListsStop) return "sweeps come, but no lists go out";
   return "";
 }
 
-/// Not again and again for one reason, as of a detector that is late with every other sweep.
-void HealthWatch::say_sight(std::int64_t now_ns, const std::string& reason) {
-  constexpr std::int64_t kPause = 10'000'000'000;
+/// Logs one reason only once in a while: a detector may be late with every other sweep.
+void HealthWatch::log_sight(std::int64_t now_ns, const std::string& reason) {
   const bool sees = reason.empty();
-  if (!sees) says_sight_ = reason != said_reason_ || now_ns - said_at_ns_ >= kPause;
-  if (!says_sight_) return;
-  say(!sees, sees ? "sees: obstacle lists go out" : "blind: " + reason);
+  if (!sees) logs_sight_ = reason != logged_reason_ || now_ns - logged_at_ns_ >= kLogPauseNs;
+  if (!logs_sight_) return;
+  add_line(!sees, sees ? "sees: obstacle lists go out" : "blind: " + reason);
   if (sees) return;
-  said_reason_ = reason;
-  said_at_ns_ = now_ns;
+  logged_reason_ = reason;
+  logged_at_ns_ = now_ns;
 }
 
-void HealthWatch::say_losses(std::int64_t now_ns, const LidarStatus& lidar,
+void HealthWatch::log_losses(std::int64_t now_ns, const LidarStatus& lidar,
                              const DetectorStatus& detector) {
   struct Loss {
     std::uint64_t count;
@@ -185,42 +184,43 @@ void HealthWatch::say_losses(std::int64_t now_ns, const LidarStatus& lidar,
        "turns of the IMU's yaw that its angular rate did not know of: they were not believed"},
   }};
   for (std::size_t i = 0; i < kLosses; ++i) {
-    losses_[i].say(now_ns, losses[i].count, losses[i].what, log_);
+    losses_[i].update(now_ns, losses[i].count, losses[i].what, log_);
   }
 }
 
-void HealthWatch::say_first_packets(const LidarStatus& lidar) {
-  if (!said_datagram_ && lidar.last_datagram_ns != 0) {
-    say(false, fmt::format("first datagram on {} is from {} and has {} bytes", port_,
-                           ipv4_text(lidar.sender), lidar.datagram_size));
-    said_datagram_ = true;
+void HealthWatch::log_first_packets(const LidarStatus& lidar) {
+  if (!logged_datagram_ && lidar.last_datagram_ns != 0) {
+    add_line(false, fmt::format("first datagram on {} is from {} and has {} bytes", port_,
+                                ipv4_text(lidar.sender), lidar.datagram_size));
+    logged_datagram_ = true;
   }
-  if (!said_packet_ && lidar.last_packet_ns != 0) {
-    say(false, fmt::format("lidar: {}, {}", name_of(settings_.lidar.model), modes_of(lidar.lidar)));
-    said_packet_ = true;
+  if (!logged_packet_ && lidar.last_packet_ns != 0) {
+    add_line(false,
+             fmt::format("lidar: {}, {}", name_of(settings_.lidar.model), modes_of(lidar.lidar)));
+    logged_packet_ = true;
   }
-  if (lidar.firmware != said_firmware_) {
-    say(lidar.firmware == velodyne::Firmware::hdl32e, std::string(sentence(lidar.firmware)));
-    said_firmware_ = lidar.firmware;
+  if (lidar.firmware != logged_firmware_) {
+    add_line(lidar.firmware == velodyne::Firmware::hdl32e, std::string(sentence(lidar.firmware)));
+    logged_firmware_ = lidar.firmware;
   }
 }
 
-void HealthWatch::say_pulses(const LidarStatus& lidar) {
-  if (!said_pulse_ && lidar.pulses > 0) {
-    say(false, "the pulse per second of gpio.pps comes");
-    said_pulse_ = true;
+void HealthWatch::log_pulses(const LidarStatus& lidar) {
+  if (!logged_pulse_ && lidar.pulses > 0) {
+    add_line(false, "the pulse per second of gpio.pps comes");
+    logged_pulse_ = true;
   }
-  if (lidar.is_pps_lost != said_pps_lost_) {
-    say(lidar.is_pps_lost, lidar.is_pps_lost ? "the GPIO chip of gpio.pps is gone"
-                                             : "the line of gpio.pps is there again");
-    said_pps_lost_ = lidar.is_pps_lost;
+  if (lidar.is_pps_lost != logged_pps_lost_) {
+    add_line(lidar.is_pps_lost, lidar.is_pps_lost ? "the GPIO chip of gpio.pps is gone"
+                                                  : "the line of gpio.pps is there again");
+    logged_pps_lost_ = lidar.is_pps_lost;
   }
-  if (lidar.pulses > 0 && lidar.has_no_pulse != said_no_pulse_) {
-    say(lidar.has_no_pulse, lidar.has_no_pulse
-                                ? "the lidar says that it hears no pulse per second: those of "
-                                  "gpio.pps are not used; are both wired to one source?"
-                                : "the lidar hears the pulse per second");
-    said_no_pulse_ = lidar.has_no_pulse;
+  if (lidar.pulses > 0 && lidar.has_no_pulse != logged_no_pulse_) {
+    add_line(lidar.has_no_pulse, lidar.has_no_pulse
+                                     ? "the lidar says that it hears no pulse per second: those of "
+                                       "gpio.pps are not used; are both wired to one source?"
+                                     : "the lidar hears the pulse per second");
+    logged_no_pulse_ = lidar.has_no_pulse;
   }
 }
 

@@ -8,6 +8,7 @@
 
 #include "log_lines.hpp"
 #include "scree/config/settings.hpp"
+#include "scree/core/nanoseconds.hpp"
 #include "sensor_status.hpp"
 #include "sensor_watch.hpp"
 
@@ -16,14 +17,14 @@ namespace scree {
 /// What became of the sweeps that were handed to the detector. Times are of the steady clock, 0
 /// before the first.
 struct DetectorStatus {
-  std::int64_t last_round_ns = 0;  ///< its thread waited, or began or ended with a sweep
-  std::int64_t last_list_ns = 0;   ///< LCM took a list, of a sweep not older than kOldSweep
-  std::uint64_t not_covered = 0;   ///< sweeps that waited in vain for samples of IMU or encoder
+  std::int64_t last_loop_ns = 0;  ///< its thread waited, or began or ended with a sweep
+  std::int64_t last_list_ns = 0;  ///< LCM took a list, of a sweep not older than kOldSweep
+  std::uint64_t not_covered = 0;  ///< sweeps that waited in vain for samples of IMU or encoder
   std::uint64_t slips = 0, heading_resets = 0;  ///< see MotionReport
 };
 
-/// Judges from what the threads report whether the robot sees, and what a person should read in the
-/// log. Knows no clock: `now_ns` is the steady clock's.
+/// Decides from what the threads report whether the robot sees, and what a person should read in
+/// the log. It reads no clock: `now_ns` is the steady clock's.
 ///
 /// The robot is blind unless packets of the lidar come and are understood (SensorWatch::kSilence)
 /// and have returns (kReturnsStop), they make whole turns (kTurnStops), the detector is not late
@@ -31,14 +32,16 @@ struct DetectorStatus {
 /// is asked every 20 ms. Without IMU and encoder the robot sees less well, and is not blind.
 class HealthWatch {
 public:
-  // A VLP-16 turns at least 5 times a second, and the detector has to keep up with that.
-  static constexpr std::int64_t kReturnsStop = 200'000'000;
-  static constexpr std::int64_t kTurnStops = 250'000'000;
-  static constexpr std::int64_t kDetectorStops = 250'000'000;
-  // The longest turn, and all that a latency can change meanwhile: with all else in order.
-  static constexpr std::int64_t kListsStop = 400'000'000;
-  // What is found in a sweep that old, as after a pause of the whole computer, is no sight.
-  static constexpr std::int64_t kOldSweep = 5'000'000'000;
+  // A VLP-16 turns at least 5 times a second (its manual, rotation speed: 300 to 1200 rpm), so that
+  // a turn takes 200 ms. Ground returns come in each turn; whole turns and the detector have 50 ms
+  // more for what delays them.
+  static constexpr std::int64_t kReturnsStop = 200 * kMillisecond;
+  static constexpr std::int64_t kTurnStops = 250 * kMillisecond;
+  static constexpr std::int64_t kDetectorStops = 250 * kMillisecond;
+  // Two turns: lists of which one was quick and the next one late are so far apart.
+  static constexpr std::int64_t kListsStop = 400 * kMillisecond;
+  // A list of a sweep that old says nothing of now. One comes after a pause of the whole computer.
+  static constexpr std::int64_t kOldSweep = 5 * kSecond;
 
   HealthWatch(const Settings& settings, std::int64_t now_ns);
 
@@ -57,24 +60,26 @@ private:
                       const EncoderStatus& encoder, health_t& health);
   std::string blind_reason(std::int64_t now_ns, const LidarStatus& lidar, std::int8_t state,
                            const DetectorStatus& detector) const;
-  void say(bool is_warning, std::string text) { log_.push_back({is_warning, std::move(text)}); }
-  void say_sight(std::int64_t now_ns, const std::string& reason);
-  void say_first_packets(const LidarStatus& lidar);
-  void say_pulses(const LidarStatus& lidar);
-  void say_losses(std::int64_t now_ns, const LidarStatus& lidar, const DetectorStatus& detector);
+  void add_line(bool is_warning, std::string text) {
+    log_.push_back({is_warning, std::move(text)});
+  }
+  void log_sight(std::int64_t now_ns, const std::string& reason);
+  void log_first_packets(const LidarStatus& lidar);
+  void log_pulses(const LidarStatus& lidar);
+  void log_losses(std::int64_t now_ns, const LidarStatus& lidar, const DetectorStatus& detector);
 
   Settings settings_;
   std::string port_;  // "UDP port 2368"
   LogLines log_;
   SensorWatch lidar_, imu_, encoder_;
-  velodyne::Firmware said_firmware_ = velodyne::Firmware::undecided;
-  bool says_sight_ = true;
-  std::string said_reason_;
-  std::int64_t said_at_ns_ = 0;
-  bool said_datagram_ = false, said_packet_ = false;
-  bool said_pulse_ = false, said_pps_lost_ = false, said_no_pulse_ = false;
+  velodyne::Firmware logged_firmware_ = velodyne::Firmware::undecided;
+  bool logs_sight_ = true;
+  std::string logged_reason_;
+  std::int64_t logged_at_ns_ = 0;
+  bool logged_datagram_ = false, logged_packet_ = false;
+  bool logged_pulse_ = false, logged_pps_lost_ = false, logged_no_pulse_ = false;
   static constexpr std::size_t kLosses = 4;
-  std::array<Growth, kLosses> losses_;
+  std::array<GrowthLog, kLosses> losses_;
 };
 
 }  // namespace scree

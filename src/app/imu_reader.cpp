@@ -41,7 +41,7 @@ void ImuReader::open() {
   if (opened) {
     device_.emplace(std::move(*opened));
   } else {
-    say(opened.error().message);
+    log_problem(opened.error().message);
   }
 }
 
@@ -63,17 +63,17 @@ void ImuReader::read() {
   if (measures && !measures_) {
     spdlog::info("IMU: measuring on {}", settings_.device);
     if (!device_->note().empty()) spdlog::warn("IMU: {}", device_->note());
-    said_.clear();
+    logged_problem_.clear();
   } else if (!measures) {
-    say(device_->problem());
+    log_problem(device_->problem());
   }
   measures_ = measures;
 }
 
-void ImuReader::say(const std::string& problem) {
-  if (problem.empty() || problem == said_) return;
+void ImuReader::log_problem(const std::string& problem) {
+  if (problem.empty() || problem == logged_problem_) return;
   spdlog::warn("IMU: {}", problem);
-  said_ = problem;
+  logged_problem_ = problem;
 }
 
 }  // namespace scree

@@ -34,7 +34,7 @@ public:
 private:
   void open();
   void read();
-  void say(const std::string& problem);
+  void log_problem(const std::string& problem);
 
   ImuSettings settings_;
   std::optional<xsens::Device> device_;
@@ -43,7 +43,7 @@ private:
   ImuStatus status_;
   TripleBuffer<ImuStatus> shared_status_;
   bool measures_ = false;
-  std::string said_;
+  std::string logged_problem_;
   LoopCounter loops_;
   Event stop_;
 };

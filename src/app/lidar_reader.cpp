@@ -12,7 +12,8 @@
 namespace scree {
 namespace {
 
-// Datagrams read from one port before the other one and stop() get their turn.
+// Datagrams read from one port before the other one and stop() get their turn: 85 ms of a VLP-16's,
+// which sends one every 1.327 ms.
 constexpr int kBatch = 64;
 
 }  // namespace

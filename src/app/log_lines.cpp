@@ -4,13 +4,13 @@
 
 namespace scree {
 
-void Growth::say(std::int64_t now_ns, std::uint64_t count, std::string_view what, LogLines& log) {
-  constexpr std::int64_t kPause = 10'000'000'000;
-  if (count == said_ || (said_ != 0 && now_ns - said_at_ns_ < kPause)) return;
+void GrowthLog::update(std::int64_t now_ns, std::uint64_t count, std::string_view what,
+                       LogLines& log) {
+  if (count == logged_ || (logged_ != 0 && now_ns - logged_at_ns_ < kLogPauseNs)) return;
   log.push_back(
-      {true, fmt::format("{} ({} more, {} since the start)", what, count - said_, count)});
-  said_ = count;
-  said_at_ns_ = now_ns;
+      {true, fmt::format("{} ({} more, {} since the start)", what, count - logged_, count)});
+  logged_ = count;
+  logged_at_ns_ = now_ns;
 }
 
 }  // namespace scree

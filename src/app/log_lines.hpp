@@ -5,23 +5,28 @@
 #include <string_view>
 #include <vector>
 
+#include "scree/core/nanoseconds.hpp"
+
 namespace scree {
 
-/// What is worth a line in the log.
+/// What a person should read in the log.
 struct LogLine {
   bool is_warning;
   std::string text;
 };
 using LogLines = std::vector<LogLine>;
 
-/// A count that is worth a line when it has grown, but not more often than every ten seconds.
-class Growth {
+/// Lines about the same thing are at least so far apart: a lasting fault must not fill the log.
+inline constexpr std::int64_t kLogPauseNs = 10 * kSecond;
+
+/// Logs a count when it has grown, but not more often than every kLogPauseNs.
+class GrowthLog {
 public:
-  void say(std::int64_t now_ns, std::uint64_t count, std::string_view what, LogLines& log);
+  void update(std::int64_t now_ns, std::uint64_t count, std::string_view what, LogLines& log);
 
 private:
-  std::uint64_t said_ = 0;
-  std::int64_t said_at_ns_ = 0;
+  std::uint64_t logged_ = 0;
+  std::int64_t logged_at_ns_ = 0;
 };
 
 }  // namespace scree

@@ -6,12 +6,10 @@
 namespace scree {
 
 /// The longest that a thread waits for something before it runs through its loop again. It is less
-/// than the time between two checks of the watchdog: 0.75 s, a quarter of the service's
-/// WatchdogSec.
+/// than the 0.75 s between two checks of the watchdog, a quarter of the service's WatchdogSec.
 constexpr int kMaxWaitMs = 500;
 
-/// Counts how often a thread has run through its loop, so that another one can see whether it still
-/// does.
+/// Counts how often a thread has run through its loop, for another thread that watches it.
 class LoopCounter {
 public:
   void increment() { count_.fetch_add(1, std::memory_order_relaxed); }

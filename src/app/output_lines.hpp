@@ -15,7 +15,7 @@ public:
   /// @param name for people; without `set` there is no such line
   OutputLine(std::string name, RobotLines::Set set);
 
-  /// To be called again and again: a chip that was unplugged has forgotten the level.
+  /// Sets the level. It is called again and again, for a chip that was unplugged has forgotten it.
   void set(bool is_on);
   /// One sentence while it cannot be set, else empty.
   const std::string& problem() const { return problem_; }
@@ -39,7 +39,7 @@ public:
   void toggle_heartbeat();
 
   bool is_stopped(std::int64_t now_ns) const { return decision_.is_on(now_ns); }
-  /// Of the stop line, else of the heartbeat; see OutputLine.
+  /// The problem of the stop line, else that of the heartbeat; see OutputLine.
   const std::string& problem() const;
 
 private:

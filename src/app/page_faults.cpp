@@ -7,7 +7,7 @@
 namespace scree {
 namespace {
 
-/// Of a line "TID (NAME) STATE ..."; the name may hold blanks and parentheses.
+/// The faults in a line "TID (NAME) STATE ..."; the name may hold blanks and parentheses.
 PageFaults faults_in(const std::string& line) {
   const std::size_t begin = line.find('('), end = line.rfind(')');
   if (begin == std::string::npos || end == std::string::npos) return {};

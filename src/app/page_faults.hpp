@@ -14,9 +14,9 @@ struct PageFaults {
   std::int64_t major = 0;  ///< that had to wait for a disk
 };
 
-/// Those of each thread of this process, the oldest first, as the kernel counts them: proc(5),
-/// /proc/PID/task/TID/stat. The threads themselves do nothing for it. Empty where there is no
-/// /proc.
+/// The page faults of each thread of this process, the oldest thread first, as the kernel counts
+/// them in /proc/PID/task/TID/stat (proc(5)). The threads do nothing for it. Without /proc the
+/// result is empty.
 std::vector<PageFaults> page_faults(const std::filesystem::path& threads = "/proc/self/task");
 
 }  // namespace scree

@@ -13,8 +13,7 @@ public:
   PipelineProcessor(Pipeline& pipeline, const TrackingSettings& tracking);
 
   const ObstacleList* operator()(const Sweep& sweep, DetectionReport& report);
-  /// Takes effect from the next sweep on. One thread may call it, another one than the processing
-  /// one.
+  /// Takes effect from the next sweep on. One thread may call it beside the processing one.
   void set_tracking(const TrackingSettings& settings) { tracking_.put(settings); }
 
 private:

@@ -10,6 +10,8 @@
 namespace scree {
 namespace {
 
+// Shares of the expected rate: a sensor is slow that loses one message in ten. The second is higher
+// so that a rate near the first does not change the state each second.
 constexpr double kSlow = 0.90, kSlowNoMore = 0.95;
 
 static_assert(static_cast<int>(ClockState::unsynchronised) == sensor_health_t::UNSYNCHRONISED &&
@@ -64,40 +66,41 @@ bool SensorWatch::update(std::int64_t now_ns, const SensorStatus& status, sensor
   if (unclear_since_ns_ == 0 && last_heard_ns_ > last_message_ns_) {
     unclear_since_ns_ = last_heard_ns_;
   }
-  measure(now_ns, status, health);
-  const bool is_slow = judged_ == sensor_health_t::OK && is_slow_;
-  health.state = is_slow ? sensor_health_t::SLOW : judged_;
+  update_rate(now_ns, status, health);
+  const bool is_slow = state_ == sensor_health_t::OK && is_slow_;
+  health.state = is_slow ? sensor_health_t::SLOW : state_;
 
   if (health.state != before) log.push_back(line_of(now_ns, status, health, before));
-  if (judged_ == sensor_health_t::NEVER_SEEN && !said_missing_ && now_ns - start_ns_ >= kSecond) {
+  if (state_ == sensor_health_t::NEVER_SEEN && !logged_missing_ && now_ns - start_ns_ >= kSecond) {
     log.push_back({true, fmt::format("no {} have come yet: {}", terms_.messages, terms_.advice)});
-    said_missing_ = true;
+    logged_missing_ = true;
   }
   refused_.resize(status.refused.size());
   for (std::size_t i = 0; i < refused_.size(); ++i) {
-    refused_[i].say(now_ns, status.refused[i].count,
-                    fmt::format("{} refused: {}", terms_.messages, status.refused[i].reason), log);
+    refused_[i].update(now_ns, status.refused[i].count,
+                       fmt::format("{} refused: {}", terms_.messages, status.refused[i].reason),
+                       log);
   }
-  kernel_drops_.say(
+  kernel_drops_.update(
       now_ns, status.kernel_drops,
       fmt::format("{} dropped by the kernel: the reader was too slow", terms_.messages), log);
   return health.state != before || health.clock != clock_before;
 }
 
-std::int8_t SensorWatch::judge(std::int64_t now_ns, const SensorStatus& status) const {
+std::int8_t SensorWatch::state_at(std::int64_t now_ns, const SensorStatus& status) const {
   if (status.last_heard_ns == 0) return sensor_health_t::NEVER_SEEN;
   if (now_ns - status.last_heard_ns > kSilence) return sensor_health_t::SILENT;
   const bool is_understood =
       status.last_message_ns != 0 && now_ns - status.last_message_ns <= kSilence;
   if (is_understood) return sensor_health_t::OK;
-  return now_ns - unclear_since_ns_ > kSilence ? sensor_health_t::WRONG_DATA : judged_;
+  return now_ns - unclear_since_ns_ > kSilence ? sensor_health_t::WRONG_DATA : state_;
 }
 
-void SensorWatch::measure(std::int64_t now_ns, const SensorStatus& status,
-                          sensor_health_t& health) {
-  const std::int8_t judged = judge(now_ns, status);
+void SensorWatch::update_rate(std::int64_t now_ns, const SensorStatus& status,
+                              sensor_health_t& health) {
+  const std::int8_t state = state_at(now_ns, status);
   const std::int64_t elapsed_ns = now_ns - begin_ns_;
-  if (judged != judged_) {
+  if (state != state_) {
     health.rate = 0;
     is_slow_ = false;
   } else if (elapsed_ns >= kSecond) {
@@ -112,7 +115,7 @@ void SensorWatch::measure(std::int64_t now_ns, const SensorStatus& status,
   } else {
     return;
   }
-  judged_ = judged;
+  state_ = state;
   begin_ns_ = now_ns;
   begin_messages_ = status.messages;
   begin_lost_ = status.lost;

@@ -8,6 +8,7 @@
 
 #include "log_lines.hpp"
 #include "scree/clock/device_clock.hpp"
+#include "scree/core/nanoseconds.hpp"
 
 namespace scree {
 
@@ -31,8 +32,8 @@ struct SensorStatus {
   std::string_view main_reason() const;
 };
 
-/// Judges one sensor, fills in its part of health and says what a person should read in the log.
-/// Knows no clock: `now_ns` is the steady clock's.
+/// Finds the state of one sensor, fills in its part of health and adds what a person should read to
+/// the log. It reads no clock: `now_ns` is the steady clock's.
 ///
 /// | state      | when                                                               |
 /// |------------|--------------------------------------------------------------------|
@@ -45,7 +46,7 @@ class SensorWatch {
 public:
   // The daemon looks every 20 ms, so that silence is published within 300 ms. A VLP-16 sends a
   // packet every 1.3 ms, an MTi a message every 10 ms, an encoder a frame every 100 ms at least.
-  static constexpr std::int64_t kSilence = 200'000'000;
+  static constexpr std::int64_t kSilence = 200 * kMillisecond;
 
   struct Terms {
     std::string messages;      ///< "packets on UDP port 2368"
@@ -61,8 +62,8 @@ public:
 
 private:
   /// The state but for SLOW.
-  std::int8_t judge(std::int64_t now_ns, const SensorStatus& status) const;
-  void measure(std::int64_t now_ns, const SensorStatus& status, sensor_health_t& health);
+  std::int8_t state_at(std::int64_t now_ns, const SensorStatus& status) const;
+  void update_rate(std::int64_t now_ns, const SensorStatus& status, sensor_health_t& health);
   LogLine line_of(std::int64_t now_ns, const SensorStatus& status, const sensor_health_t& health,
                   std::int8_t before) const;
 
@@ -70,16 +71,16 @@ private:
   std::int64_t start_ns_, last_heard_ns_ = 0, last_message_ns_ = 0;
   std::int64_t silent_since_ns_ = 0;   ///< of the last silence
   std::int64_t unclear_since_ns_ = 0;  ///< nothing of what came from then on was understood
-  bool said_missing_ = false;
+  bool logged_missing_ = false;
 
   // The second over which the rate is measured; it begins anew when the state changes.
-  std::int8_t judged_ = sensor_health_t::NEVER_SEEN;
+  std::int8_t state_ = sensor_health_t::NEVER_SEEN;
   std::int64_t begin_ns_ = 0;
   std::uint64_t begin_messages_ = 0, begin_lost_ = 0;
   bool is_slow_ = false;
 
-  std::vector<Growth> refused_;
-  Growth kernel_drops_;
+  std::vector<GrowthLog> refused_;
+  GrowthLog kernel_drops_;
 };
 
 }  // namespace scree

@@ -16,8 +16,8 @@ void status(const std::string& sentence);
 /// All threads loop.
 void alive();
 
-/// Without alive() for so long, systemd ends the process and starts it anew; nothing where it does
-/// not watch.
+/// The time after which systemd restarts the process when it has not called alive(); nothing where
+/// systemd does not watch.
 std::optional<std::chrono::microseconds> watchdog();
 
 /// Whether standard error goes to the journal, which stamps lines itself and takes their level from

@@ -9,8 +9,8 @@
 
 namespace scree {
 
-/// The signals that the daemon obeys. To be made before it starts threads, which inherit that they
-/// are blocked.
+/// The signals that the daemon obeys. This is made before the daemon starts its threads, because
+/// threads inherit which signals are blocked.
 class Signals {
 public:
   Signals();
@@ -21,9 +21,9 @@ private:
   sigset_t signals_{};
 };
 
-/// Serves the running daemon until SIGTERM or SIGINT comes, which it returns. Tells systemd how the
-/// daemon fares, and that it is alive as long as all its threads loop. The log names a thread that
-/// hangs.
+/// Serves the running daemon until SIGTERM or SIGINT comes, which it returns. It tells systemd how
+/// the daemon fares, and that it is alive as long as all its threads loop. A thread that hangs
+/// is named in the log.
 /// @param reload is called at SIGHUP
 int supervise(Daemon& daemon, const Signals& signals, const std::function<void()>& reload);
 

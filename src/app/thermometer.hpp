@@ -11,7 +11,7 @@ class Thermometer {
 public:
   explicit Thermometer(const std::filesystem::path& classes = "/sys/class");
 
-  /// Of the hottest of its sensors, degrees Celsius; not a number where there is none.
+  /// The hottest sensor of the processor, degrees Celsius; not a number where there is none.
   double celsius() const;
 
 private:

@@ -21,8 +21,8 @@ public:
     return std::ranges::any_of(watched_, [&](const Watched& one) { return one.thread == thread; });
   }
 
-  /// The first thread that has not looped since the last call that found that all had; empty when
-  /// all have.
+  /// The first thread that has not looped since the last call that returned nothing; empty when all
+  /// of them have.
   std::string_view stalled() {
     for (const Watched& watched : watched_) {
       if (watched.loops->count() == watched.last_count) return watched.thread;

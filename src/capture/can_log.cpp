@@ -35,14 +35,14 @@ bool cut(std::string_view& text, char separator, std::string_view& before) {
 
 /// `1598601600.123456`
 bool read_time(std::string_view text, std::int64_t& t_ns) {
-  constexpr std::int64_t kMostSeconds = 9'000'000'000;
+  constexpr std::int64_t kMostSeconds = 9'000'000'000;  // as nanoseconds they fit in 64 bits
   std::string_view whole;
   std::int64_t seconds = 0, fraction = 0;
   if (!cut(text, '.', whole) || text.size() > 9) return false;
   if (!read_number(whole, 10, seconds) || !read_number(text, 10, fraction)) return false;
   if (seconds > kMostSeconds) return false;
   for (std::size_t digits = text.size(); digits < 9; ++digits) fraction *= 10;
-  t_ns = seconds * 1'000'000'000 + fraction;
+  t_ns = seconds * kSecond + fraction;
   return true;
 }
 

@@ -13,8 +13,8 @@ constexpr std::uint32_t kMagic = 0xEDA1DA01;
 constexpr std::size_t kMagicSize = 4;
 constexpr std::size_t kHeaderSize = 28;
 constexpr std::size_t kTimeOffset = 12, kChannelLengthOffset = 20, kDataLengthOffset = 24;
-constexpr std::uint64_t kLongestChannel = 63;  // LCM_MAX_CHANNEL_NAME_LENGTH
-constexpr std::uint64_t kLatestUs = 9'000'000'000'000'000;
+constexpr std::uint64_t kLongestChannel = 63;               // LCM_MAX_CHANNEL_NAME_LENGTH
+constexpr std::uint64_t kLatestUs = 9'000'000'000'000'000;  // as nanoseconds it fits in 64 bits
 
 using Header = std::array<char, kHeaderSize>;
 

@@ -5,6 +5,8 @@
 
 #include <array>
 
+#include "scree/core/nanoseconds.hpp"
+
 namespace scree {
 
 void PcapReader::Close::operator()(pcap* handle) const {
@@ -46,14 +48,15 @@ bool PcapReader::next(PcapRecord& record) {
     }
     return false;
   }
-  // With nanosecond precision tv_usec holds nanoseconds; a garbled record may hold any number.
+  // With nanosecond precision tv_usec holds nanoseconds. A garbled record may hold any number; so
+  // many seconds fit in 64 bits as nanoseconds.
   constexpr std::int64_t kMostSeconds = 9'000'000'000;
   const std::int64_t seconds = header->ts.tv_sec, nanoseconds = header->ts.tv_usec;
-  if (seconds < 0 || seconds > kMostSeconds || nanoseconds < 0 || nanoseconds >= 1'000'000'000) {
+  if (seconds < 0 || seconds > kMostSeconds || nanoseconds < 0 || nanoseconds >= kSecond) {
     broken_off_ = fmt::format("{}: breaks off: a record has an impossible time", name_);
     return false;
   }
-  record.arrival_ns = seconds * 1'000'000'000 + nanoseconds;
+  record.arrival_ns = seconds * kSecond + nanoseconds;
   record.bytes = {bytes, header->caplen};
   record.original_size = header->len;
   return true;

@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <array>
 
+#include "scree/core/nanoseconds.hpp"
+
 namespace scree {
 namespace {
 
 constexpr std::size_t kEthernetHeader = 14, kIpHeader = 20;
 constexpr std::size_t kHeaders = kEthernetHeader + kIpHeader + kUdpHeader;
-constexpr int kSnapLength = 262144;
+constexpr int kSnapLength = 262144;  // the default of tcpdump
 
 /// The Internet checksum (RFC 1071): the ones' complement of the ones' complement sum of 16-bit
 /// words, begun with `sum`.
@@ -62,8 +64,8 @@ void write_headers(const Datagram& datagram, std::span<std::uint8_t> frame) {
 
 void dump(pcap_dumper* dumper, const PcapRecord& record) {
   pcap_pkthdr header{};
-  header.ts.tv_sec = record.arrival_ns / 1'000'000'000;
-  header.ts.tv_usec = record.arrival_ns % 1'000'000'000;  // nanoseconds, by the file's precision
+  header.ts.tv_sec = record.arrival_ns / kSecond;
+  header.ts.tv_usec = record.arrival_ns % kSecond;  // nanoseconds, by the file's precision
   header.caplen = static_cast<bpf_u_int32>(record.bytes.size());
   header.len = static_cast<bpf_u_int32>(record.original_size);
   // libpcap's callback type makes the file handle look like a string of bytes.

@@ -11,6 +11,8 @@
 namespace scree {
 namespace {
 
+// Beyond these a header is garbled. The longest descriptor in PCL has 1980 values a point, and PCL
+// counts points with 32 bits.
 constexpr std::size_t kMostFields = 256, kMostCount = 4096;
 constexpr std::size_t kMostPoints = std::size_t{1} << 31;
 

@@ -37,8 +37,8 @@ struct PcdHeader {
 };
 
 /// Reads and checks the header at the beginning of `file`, the bytes of a whole file. When it
-/// succeeds the body is as long as the header says (ascii: long enough to be it), and x, y, z are
-/// there.
+/// succeeds, x, y and z are there, and the body is as long as the header says. An ascii body is
+/// long enough for the values that the header says.
 Result<PcdHeader> parse_pcd_header(std::string_view file);
 
 }  // namespace scree

@@ -8,8 +8,8 @@
 
 namespace scree {
 
-// lcm-cpp's own subscriptions are not used: their call through a pointer to a member trips the
-// undefined-behaviour sanitizer.
+// LCM's C interface is used here: lcm-cpp calls subscriptions through a pointer to a member, which
+// trips the undefined-behaviour sanitizer.
 
 Result<std::unique_ptr<Subscriber>> Subscriber::open(const std::string& lcm_url, OnList on_list,
                                                      OnHealth on_health) {

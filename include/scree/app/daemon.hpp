@@ -13,13 +13,12 @@
 namespace scree {
 
 /// The robot's daemon: one thread reads each sensor, one detects, one publishes lists and health
-/// and writes the log. Between them lie bounded rings; where one is full the newest is dropped and
+/// and writes the log. Between them lie bounded queues; where one is full the newest is dropped and
 /// counted. A sensor that is lost is waited for, for ever. A sweep waits for the motion that covers
 /// it, but not longer than map.wait.
 ///
-/// Sweeps are on the monotonic clock, and so are the lists that `SweepProcessor` makes of them;
-/// lists are published with the wall-clock time of then. Setting the wall clock disturbs nothing
-/// else.
+/// Sweeps are on the monotonic clock, and so are the lists that `SweepProcessor` makes of them.
+/// Lists are published in wall-clock time. Setting the wall clock disturbs nothing else.
 class Daemon {
 public:
   /// Binds the ports, opens LCM and starts the threads. The caller blocks the signals that it waits
@@ -35,12 +34,12 @@ public:
 
   // For the thread that has started it.
 
-  /// The name of a thread that has not looped since the last call that found that all had; empty
-  /// when all have. A thread that waits loops twice a second, the detector once a sweep.
+  /// The name of a thread that has not looped since the last call that returned nothing; empty when
+  /// all of them have. A thread that waits loops twice a second, the detector once a sweep.
   virtual std::string_view stalled_thread() = 0;
   /// Takes over settings.stop and settings.map.wait.
   virtual void apply(const Settings& settings) = 0;
-  /// What the robot sees, or why it does not; one sentence.
+  /// What the robot sees, or why it does not: one sentence.
   virtual std::string status() = 0;
 };
 

@@ -25,12 +25,11 @@ struct Networks {
 /// From sweeps and motion samples to obstacle lists: the daemon and `scree detect` both run this.
 /// Each sweep is added to the map, and obstacles are found in the map. As long as no IMU and no
 /// encoder has said anything, each sweep is taken by itself instead, and `odom` is `base`; an
-/// obstacle then keeps its id while it moves little from sweep to sweep. Memory is taken once, in
-/// make().
+/// obstacle then keeps its id while it moves little from sweep to sweep. Memory is taken once, when
+/// it is made.
 class Pipeline {
 public:
-  /// @param config_file beside which a relative name of a weights file is looked for first; may be
-  /// empty
+  /// @param config_file its folder is searched first for the weights files; it may be empty
   static Result<Pipeline> make(const Settings& settings, const std::filesystem::path& config_file);
   Pipeline(const Settings& settings, const Networks& networks);
 
@@ -41,9 +40,9 @@ public:
   /// From the next sweep on.
   void set_tracking(const TrackingSettings& settings) { tracker_.set(settings); }
 
-  /// Whether the last list says what is there, so that an empty one says that nothing is: the sweep
-  /// was a whole turn, and where there is a map it holds points, as it does not after its first
-  /// sweep.
+  /// Whether the last list says what is there, so that an empty one says that nothing is. It does
+  /// when the sweep was a whole turn and the map, where there is one, holds points. After its first
+  /// sweep the map holds none yet.
   bool has_looked() const { return has_looked_; }
   /// From the next sweep on the stages are timed on that clock.
   void time_stages(StageTimer::Clock clock) { timer_ = StageTimer(clock); }

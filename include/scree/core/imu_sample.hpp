@@ -5,8 +5,8 @@
 
 namespace scree {
 
-/// One measurement of the IMU, in its own axes (`imu` frame). What the device did not send is
-/// absent.
+/// One measurement of the IMU, in its own axes (`imu` frame).
+/// What the device did not send is absent.
 struct ImuSample {
   std::int64_t t_ns = 0;  ///< host time of the measurement
   bool has_orientation = false, has_rate = false, has_acceleration = false;

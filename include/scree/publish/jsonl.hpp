@@ -6,9 +6,9 @@
 
 namespace scree {
 
-/// Appends a list as one line of JSON with its line feed. Numbers are the shortest that read back
-/// as the same value; one that is not finite is written as null. Allocates only when `text` has to
-/// grow.
+/// Appends a list as one line of JSON with its line feed. A number is written as the shortest text
+/// that reads back as the same value, and as null when it is not finite. Allocates only when `text`
+/// has to grow.
 void append_json_line(const ObstacleList& list, std::string& text);
 
 }  // namespace scree

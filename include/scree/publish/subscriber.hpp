@@ -23,8 +23,8 @@ public:
   static Result<std::unique_ptr<Subscriber>> open(const std::string& lcm_url, OnList on_list,
                                                   OnHealth on_health);
 
-  /// Waits for one message, at most so long or until a signal comes, and has it handled. False when
-  /// LCM failed.
+  /// Waits for one message and has it handled. It waits at most so long, or until a signal comes.
+  /// False when LCM failed.
   bool handle(int milliseconds);
 
 private:

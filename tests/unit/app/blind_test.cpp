@@ -39,9 +39,9 @@ struct Robot {
   /// The sweep's list comes after a latency that changes from sweep to sweep.
   void detect() {
     if (listed_sweep_ns == lidar.last_sweep_ns) {
-      detector.last_round_ns = now_ns;
+      detector.last_loop_ns = now_ns;
     } else if (now_ns - lidar.last_sweep_ns >= latency_ms * kMillisecond) {
-      detector.last_round_ns = now_ns;
+      detector.last_loop_ns = now_ns;
       listed_sweep_ns = lidar.last_sweep_ns;
       if (lists_go_out) detector.last_list_ns = now_ns;
       latency_ms = least_latency_ms + (latency_ms + 37) % (most_latency_ms - least_latency_ms);

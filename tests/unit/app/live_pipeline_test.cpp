@@ -1,5 +1,4 @@
-// The daemon's way, a thread for each sensor and one that detects, against everything in one
-// thread.
+// Compares the daemon's way, a thread for each sensor and one that detects, with a single thread.
 #include <gtest/gtest.h>
 
 #include <chrono>
