@@ -242,7 +242,7 @@ void Terrain::grow_tufts(std::uint64_t seed) {
   tufts_ = Tufts(std::move(tufts), settings_.size);
 }
 
-Terrain::Place Terrain::place(double x, double y) const {
+Terrain::RasterPosition Terrain::raster_position(double x, double y) const {
   const double last = static_cast<double>(vertices_ - 1) - 1e-6;
   const double u = std::clamp((x + half_) / settings_.cell, 0.0, last);
   const double v = std::clamp((y + half_) / settings_.cell, 0.0, last);
@@ -252,7 +252,7 @@ Terrain::Place Terrain::place(double x, double y) const {
 }
 
 double Terrain::bilinear(const std::vector<float>& raster, double x, double y) const {
-  const Place at = place(x, y);
+  const RasterPosition at = raster_position(x, y);
   const auto corner = [&](std::size_t offset) {
     return static_cast<double>(raster[at.index + offset]);
   };
@@ -284,10 +284,10 @@ Eigen::Vector3d Terrain::normal(double x, double y) const {
 }
 
 double Terrain::reflectivity(double x, double y) const {
-  return reflectivity_[place(x, y).index];
+  return reflectivity_[raster_position(x, y).index];
 }
 int Terrain::feature_at(double x, double y) const {
-  return feature_[place(x, y).index];
+  return feature_[raster_position(x, y).index];
 }
 
 namespace {

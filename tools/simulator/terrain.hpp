@@ -74,11 +74,11 @@ public:
   }
 
 private:
-  struct Place {
+  struct RasterPosition {
     std::size_t index;  ///< of the vertex at the lower corner
     double u, v;        ///< 0..1 within the cell
   };
-  Place place(double x, double y) const;
+  RasterPosition raster_position(double x, double y) const;
   double bilinear(const std::vector<float>& raster, double x, double y) const;
   void roll_ground(std::uint64_t seed);
   void roughen_ground(std::uint64_t seed);
