@@ -4,9 +4,8 @@ import json
 import os
 import signal
 import sys
-import unittest
 
-from programs import PATIENCE, ProgramTest, free_port
+from programs import PATIENCE, ProgramTest, free_port, main
 from synthetic_capture import write_capture
 
 SCREED, SCREE = sys.argv[1:3]
@@ -30,8 +29,7 @@ class DaemonTest(ProgramTest):
         super().setUp()
         self.config = self.write(
             "robot.toml",
-            f'[lidar]\naddress = "127.0.0.1"\nport = {self.port}\n'
-            f"position_port = {self.position_port}\ntranslation = [0, 0, 0.95]\n"
+            self.lidar_here() + "translation = [0, 0, 0.95]\n"
             f'[detect.sweep]\nnetwork = "network.txt"\n[lcm]\nurl = "{self.url}"\n',
         )
         self.write("network.txt", NETWORK)
@@ -126,4 +124,4 @@ class DaemonTest(ProgramTest):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
+    main(sys.argv[3:])

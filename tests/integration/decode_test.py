@@ -4,11 +4,11 @@ import csv
 import json
 import os
 import struct
-import subprocess
 import sys
-import tempfile
-import unittest
 
+from live_sensors import xbus_message
+from pcap_file import ETHERNET, SERIAL, write_pcap
+from programs import ProgramTest, main
 from synthetic_capture import data_packet, write_capture
 
 SCREE = sys.argv[1]
@@ -23,51 +23,27 @@ def item(data_id, data):
     return struct.pack(">HB", data_id, len(data)) + data
 
 
-def xbus(data, message_id=0x36):
-    body = bytes([0xFF, message_id, len(data)]) + data
-    return b"\xfa" + body + bytes([-sum(body) % 256])
-
-
 def imu_message(i):
     """Double quaternion, float rate, fixed-point acceleration; no angles."""
-    return xbus(
+    return xbus_message(
+        0x36,
         item(0x1020, struct.pack(">H", i % 65536))
         + item(0x1060, struct.pack(">I", 100 * i))
         + item(0x2013, struct.pack(">4d", 0.6, 0.0, 0.8, 0.0))
         + item(0x8020, struct.pack(">3f", 0.1, -0.2, 1e-7))
         + item(0x4021, struct.pack(">3i", 1 << 20, -1, 10 << 20))
-        + item(0xE020, struct.pack(">I", 0x80000003))
+        + item(0xE020, struct.pack(">I", 0x80000003)),
     )
 
 
-def write_imu(path, reads, link_type=147):
-    """Reads of the port, 10 ms apart, as a pcap of nanoseconds."""
-    with open(path, "wb") as file:
-        file.write(struct.pack("<IHHiIII", 0xA1B23C4D, 2, 4, 0, 0, 65535, link_type))
-        for i, data in enumerate(reads):
-            time_ns = 1_600_000_000_000_000_000 + i * 10_000_000
-            file.write(struct.pack("<IIII", *divmod(time_ns, 10**9), len(data), len(data)) + data)
-
-
-class DecodeTest(unittest.TestCase):
+class DecodeTest(ProgramTest):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = folder.name
-        self.capture = os.path.join(folder.name, "lidar.pcap")
+        super().setUp()
+        self.capture = self.path("lidar.pcap")
         write_capture(self.capture, 1.0)
 
     def scree(self, *arguments, code=0):
-        done = subprocess.run([SCREE, *arguments], capture_output=True, text=True, timeout=120)
-        self.assertEqual(done.returncode, code, done.stderr)
-        return done
-
-    def path(self, name, text=None):
-        path = os.path.join(self.folder, name)
-        if text is not None:
-            with open(path, "w") as file:
-                file.write(text)
-        return path
+        return self.done(SCREE, *arguments, code=code)
 
     def test_info_counts_what_the_capture_holds(self):
         info = json.loads(self.scree("info", self.folder, "--json").stdout)
@@ -81,14 +57,14 @@ class DecodeTest(unittest.TestCase):
         self.assertIn("port 2368     753 datagrams", table)
 
     def test_wrong_port_is_said(self):
-        config = self.path("other.toml", "[lidar]\nport = 2369\n")
+        config = self.write("other.toml", "[lidar]\nport = 2369\n")
         for command in (["info"], ["decode", "--sensor", "lidar"]):
             said = self.scree(*command, self.capture, "--config", config, code=1).stderr
             self.assertIn("no packets to port 2369, but 75", said)
             self.assertIn("a second to 2368", said)
 
     def test_the_captures_own_configuration_is_used(self):
-        self.path("scree.toml", '[lidar]\nmodel = "puck_hires"\n')
+        self.write("scree.toml", '[lidar]\nmodel = "puck_hires"\n')
         said = self.scree("info", self.folder, code=1).stderr
         self.assertIn("product byte of another model than lidar.model", said)
         self.scree("info", self.capture)
@@ -115,8 +91,14 @@ class DecodeTest(unittest.TestCase):
         with open(self.path("sweeps/sweep_000003.pcd"), "rb") as file:
             self.assertIn(b"FIELDS x y z intensity", file.read(200))
 
+    def write_imu(self, reads, link_type=SERIAL):
+        """Reads of the port, 10 ms apart."""
+        start = 1_600_000_000_000_000_000
+        records = [(start + i * 10_000_000, data) for i, data in enumerate(reads)]
+        write_pcap(self.path("imu.pcap"), records, link_type)
+
     def decoded_imu(self, reads):
-        write_imu(self.path("imu.pcap"), reads)
+        self.write_imu(reads)
         done = self.scree("decode", self.folder, "--sensor", "imu")
         lines = done.stdout.splitlines()
         self.assertEqual(lines[0], IMU_HEADER)
@@ -146,7 +128,7 @@ class DecodeTest(unittest.TestCase):
         messages[5] = messages[5][:20] + b"\x55" + messages[5][21:]
         messages[9] = b"some garbage" + messages[9]
         messages[12] = messages[11]
-        messages.append(xbus(item(0x1020, b"\0\x14") + item(0xF770, b"abc") + item(0x1060, b"")))
+        messages.append(xbus_message(0x36, item(0x1020, b"\0\x14") + item(0xF770, b"abc") + item(0x1060, b"")))
         rows, said = self.decoded_imu(messages)
         self.assertEqual(len(rows), 19)
         for sentence in ("1 wrong checksum", "1 duplicate", "1 an item has the wrong size",
@@ -158,15 +140,15 @@ class DecodeTest(unittest.TestCase):
         cases = {
             "no bytes": [],
             "no Xbus message in 300 bytes": [b"nothing of the kind ." + bytes(79)] * 3,
-            "3 Xbus messages, but none with measurements": [xbus(b"", 0x3E)] * 3,
+            "3 Xbus messages, but none with measurements": [xbus_message(0x3E, b"")] * 3,
             "wrong checksum": [imu_message(1)[:-1] + b"\0"],
         }
         for sentence, reads in cases.items():
-            write_imu(self.path("imu.pcap"), reads)
+            self.write_imu(reads)
             said = self.scree("decode", self.folder, "--sensor", "imu", code=1).stderr
             self.assertEqual(len(said.splitlines()), 1, said)
             self.assertIn(sentence, said)
-        write_imu(self.path("imu.pcap"), [imu_message(1)], link_type=1)
+        self.write_imu([imu_message(1)], ETHERNET)
         said = self.scree("decode", self.folder, "--sensor", "imu", code=1).stderr
         self.assertIn("holds no serial bytes (link type 1, not 147)", said)
         os.remove(self.path("imu.pcap"))
@@ -184,36 +166,36 @@ class DecodeTest(unittest.TestCase):
         can = "(1598601600.000001) can0 1A0#FEFFFFFF\n(1598601600.010001) can0 0C8#01\n"
         can += "(1598601600.010002) can1 1A0#07000000\n(1598601600.020001) can0 1A0#00000070\n"
         can += "(1598601600.030001) can0 1A0#00\nnonsense\n(1598601600.040001) can0 1A0#01000000"
-        self.path("can.log", can)
+        self.write("can.log", can)
         done = self.scree("decode", self.folder, "--sensor", "encoder")
         self.assertEqual(done.stdout.splitlines(), [
             "t_ns,raw,value", "1598601600000001000,-2,-0.000314",
             "1598601600020001000,1879048192,295010.566144", "1598601600040001000,1,0.000157"])  # fmt: skip
         self.assertIn("1 lines refused", done.stderr)
         self.assertIn("2 frames refused", done.stderr)
-        self.path("scree.toml", "[encoder]\nsigned = false\nscale = 1\n")
+        self.write("scree.toml", "[encoder]\nsigned = false\nscale = 1\n")
         done = self.scree("decode", self.folder, "--sensor", "encoder")
         self.assertIn("1598601600000001000,4294967294,4294967294\n", done.stdout)
 
     def test_a_dbc_file_beside_the_configuration_places_the_signal(self):
-        self.path("can.log", "(5.000001) can0 000001D0#0102\n(5.010001) can0 1D0#0BB8\n")
-        self.path("robot.dbc", "BO_ 464 SPEEDS: 2 A\n"
+        self.write("can.log", "(5.000001) can0 000001D0#0102\n(5.010001) can0 1D0#0BB8\n")
+        self.write("robot.dbc", "BO_ 464 SPEEDS: 2 A\n"
                   ' SG_ LEFT : 7|16@0+ (0.01,-10) [0|0] "km/h" A\n')  # fmt: skip
         toml = '[encoder]\ndbc = "robot.dbc"\nsignal = "SPEEDS.{}"\nkind = "{}"\n{}\n'
         said = {"signal": ("LEFD", "speed", "scale = 0.27"), "kph": ("LEFT", "speed", "scale = 1"),
                 "kind": ("LEFT", "counter", "scale = 0.27"), "scale": ("LEFT", "speed", "")}  # fmt: skip
         for word, values in said.items():
-            self.path("scree.toml", toml.format(*values))
+            self.write("scree.toml", toml.format(*values))
             error = self.scree("decode", self.folder, "--sensor", "encoder", code=1).stderr
             self.assertIn(word.replace("kph", "1 km/h is 0.277778 m/s"), error)
             self.assertEqual(len(error.splitlines()), 1, error)
-        self.path("scree.toml", toml.format("LEFT", "speed", "scale = 0.25"))
+        self.write("scree.toml", toml.format("LEFT", "speed", "scale = 0.25"))
         lines = self.scree("decode", self.folder, "--sensor", "encoder").stdout.splitlines()
         self.assertEqual(lines[1:], ["5010001000,3000,5"])
 
     def test_no_encoder_reading_is_one_sentence_and_exit_1(self):
         def said(log):
-            self.path("can.log", log)
+            self.write("can.log", log)
             error = self.scree("decode", self.folder, "--sensor", "encoder", code=1).stderr
             self.assertEqual(len(error.splitlines()), 1, error)
             return error
@@ -228,7 +210,7 @@ class DecodeTest(unittest.TestCase):
         self.assertIn("not of the form", said("nonsense\n"))
 
     def test_failures_are_one_sentence_and_exit_1(self):
-        empty, foreign = self.path("empty.pcap", ""), self.path("foreign.pcap", "no capture at all")
+        empty, foreign = self.write("empty.pcap", ""), self.write("foreign.pcap", "no capture at all")
         for capture in (self.path("none.pcap"), empty, foreign):
             for command in (["info"], ["decode", "--sensor", "lidar"]):
                 said = self.scree(*command, capture, code=1).stderr
@@ -247,4 +229,4 @@ class DecodeTest(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1] + sys.argv[2:])
+    main(sys.argv[2:])

@@ -6,29 +6,18 @@ import os
 import random
 import re
 import struct
-import subprocess
 import sys
-import tempfile
-import unittest
+
+from programs import ProgramTest, main
 
 SCREE, DATA = sys.argv[1:3]
 PAPER = os.path.join(os.path.dirname(__file__), "..", "..", "config", "paper.toml")
 KEYS = ["id", "kind", "confidence", "center", "extent", "yaw", "height", "points"]
 
 
-class DetectTest(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = folder.name
-
-    def path(self, name):
-        return os.path.join(self.folder, name)
-
+class DetectTest(ProgramTest):
     def scree(self, *arguments, code=0):
-        done = subprocess.run([SCREE, *arguments], capture_output=True, text=True, timeout=250)
-        self.assertEqual(done.returncode, code, done.stderr)
-        return done
+        return self.done(SCREE, *arguments, code=code)
 
     def detect(self, source, *arguments):
         """The lists, as objects, of `scree detect`."""
@@ -178,9 +167,7 @@ class DetectTest(unittest.TestCase):
         foreign = self.path("foreign.pcap")
         with open(foreign, "wb") as file:
             file.write(b"this is no capture")
-        config = self.path("bad.toml")
-        with open(config, "w") as file:
-            file.write("[detect.cloud]\nnetwork = 'none.txt'\n")
+        config = self.write("bad.toml", "[detect.cloud]\nnetwork = 'none.txt'\n")
         for arguments in ([garbled], [cut], [foreign], [self.simulated_cloud(), "--config", config]):
             said = self.scree("detect", *arguments, "--out", self.path("l.jsonl"), code=1).stderr
             self.assertEqual(len(said.splitlines()), 1, said)
@@ -261,13 +248,10 @@ class DetectTest(unittest.TestCase):
         cloud = self.write_pcd("few.pcd", [(x / 10, y / 10, 0.0) for x in range(40) for y in range(25)])
         self.detect(cloud)
         self.assertIn("one point cloud, 1000 points", self.draw(cloud, lists)[0])
-        none = self.path("none.jsonl")
-        open(none, "w").close()
+        none = self.write("none.jsonl", "")
         said = self.scree("picture", cloud, none, "--out", self.path("p.png"), code=1).stderr
         self.assertIn("holds no obstacle list", said)
 
 
 if __name__ == "__main__":
-    outcome = unittest.main(argv=sys.argv[:1] + sys.argv[3:], exit=False).result
-    skipped = outcome.skipped and outcome.wasSuccessful()
-    sys.exit(77 if skipped else not outcome.wasSuccessful())
+    main(sys.argv[3:])

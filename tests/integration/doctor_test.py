@@ -31,8 +31,7 @@ class DoctorTest(ProgramTest):
         self.imu = self.path("imu")
         self.config = self.write(
             "robot.toml",
-            f'[lidar]\naddress = "127.0.0.1"\nport = {self.port}\n'
-            f'position_port = {self.position_port}\n[imu]\ndevice = "{self.imu}"\n'
+            self.lidar_here() + f'[imu]\ndevice = "{self.imu}"\n'
             f'[encoder]\ninterface = "nocan0"\n[gpio]\nstop = "nochip:4"\n[lcm]\nurl = "{self.url}"\n',
         )
 

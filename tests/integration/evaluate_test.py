@@ -4,10 +4,9 @@ import json
 import math
 import os
 import random
-import subprocess
 import sys
-import tempfile
-import unittest
+
+from programs import ProgramTest, main
 
 try:
     import reference_scoring as reference
@@ -17,24 +16,12 @@ except ImportError:  # shapely is not there
 SCREE, DATA = sys.argv[1:3]
 
 
-class EvaluateTest(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = folder.name
-
-    def path(self, name):
-        return os.path.join(self.folder, name)
-
+class EvaluateTest(ProgramTest):
     def write(self, name, content):
-        with open(self.path(name), "w") as file:
-            file.write(content if isinstance(content, str) else json.dumps(content))
-        return self.path(name)
+        return super().write(name, content if isinstance(content, str) else json.dumps(content))
 
     def scree(self, *arguments, code=0):
-        done = subprocess.run([SCREE, *arguments], capture_output=True, text=True, timeout=250)
-        self.assertEqual(done.returncode, code, done.stderr)
-        return done
+        return self.done(SCREE, *arguments, code=code)
 
     def evaluate(self, *files):
         return json.loads(self.scree("evaluate", *files, "--json").stdout)
@@ -222,6 +209,4 @@ class EvaluateTest(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    outcome = unittest.main(argv=sys.argv[:1] + sys.argv[3:], exit=False).result
-    skipped = outcome.skipped and outcome.wasSuccessful()
-    sys.exit(77 if skipped else not outcome.wasSuccessful())
+    main(sys.argv[3:])

@@ -8,7 +8,7 @@ import signal
 import struct
 import sys
 
-from live_sensors import pcap_records
+from pcap_file import pcap_records
 from programs import PATIENCE, ProgramTest, free_port, main
 from synthetic_capture import write_capture
 

@@ -9,17 +9,13 @@ import struct
 import threading
 import time
 
+from pcap_file import pcap_records
 
-def pcap_records(path):
-    """(nanoseconds, bytes) of a nanosecond pcap file."""
-    with open(path, "rb") as file:
-        data = file.read()
-    assert struct.unpack_from("<I", data)[0] == 0xA1B23C4D, path
-    at = 24
-    while at + 16 <= len(data):
-        seconds, nanoseconds, size, _ = struct.unpack_from("<IIII", data, at)
-        yield seconds * 10**9 + nanoseconds, data[at + 16 : at + 16 + size]
-        at += 16 + size
+
+def xbus_message(message_id, data):
+    """A message of an Xsens device (MT0101P, "Xbus message"): preamble, bus identifier, checksum."""
+    body = bytes([0xFF, message_id, len(data)]) + data
+    return b"\xfa" + body + bytes([-sum(body) % 256])
 
 
 class EmulatedMti:
@@ -80,8 +76,7 @@ class EmulatedMti:
             if request == 0x30:  # GoToConfig
                 self.measures.clear()
             answer = {0x00: b"\x07\x71\x23\x45", 0xC0: data}.get(request, b"")
-            body = bytes([0xFF, request + 1, len(answer)]) + answer
-            os.write(self.master, b"\xfa" + body + bytes([-sum(body) % 256]))
+            os.write(self.master, xbus_message(request + 1, answer))
             if request == 0x10:  # GoToMeasurement
                 self.measures.set()
         return heard

@@ -1,5 +1,6 @@
 """What tests of screed and scree as programs share."""
 
+import csv
 import os
 import socket
 import subprocess
@@ -7,7 +8,7 @@ import sys
 import tempfile
 import unittest
 
-PATIENCE = 120  # seconds; only a hang lasts as long
+PATIENCE = 250  # seconds; only a hang lasts as long
 
 
 def free_port():
@@ -50,11 +51,25 @@ class ProgramTest(unittest.TestCase):
     def run_to_end(self, *arguments, **options):
         return subprocess.run(arguments, capture_output=True, text=True, timeout=PATIENCE, **options)
 
-    def done(self, *arguments, **options):
-        """What a program gave that ended well."""
+    def done(self, *arguments, code=0, **options):
+        """What a program gave that ended with this code."""
         result = self.run_to_end(*arguments, **options)
-        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        self.assertEqual(result.returncode, code, result.stdout + result.stderr)
         return result
+
+    def decoded(self, scree, capture, sensor, *arguments):
+        """The rows that `scree decode` lists of a sensor, without the first column, the times."""
+        out = self.path("decoded.csv")
+        self.done(scree, "decode", capture, "--sensor", sensor, "--out", out, *arguments)
+        with open(out, newline="") as file:
+            return [row[1:] for row in list(csv.reader(file))[1:]]
+
+    def lidar_here(self):
+        """The configuration's first table: the lidar on this test's ports."""
+        return (
+            f'[lidar]\naddress = "127.0.0.1"\nport = {self.port}\n'
+            f"position_port = {self.position_port}\n"
+        )
 
     def write_config_here(self, capture, imu):
         """The configuration of a simulated capture's robot, with its sensors on this computer."""

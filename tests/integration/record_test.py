@@ -1,6 +1,5 @@
 """scree record as a program, on live sensors: python3 record_test.py SCREE [TEST ...]"""
 
-import csv
 import glob
 import os
 import resource
@@ -27,16 +26,10 @@ class RecordTest(ProgramTest):
         self.config = self.write("robot.toml", self.configuration())
 
     def configuration(self, encoder='interface = "vcan0"\n'):
-        return (
-            f'[lidar]\naddress = "127.0.0.1"\nport = {self.port}\n'
-            f'position_port = {self.position_port}\n[imu]\ndevice = "{self.mti.port}"\n'
-            f"[encoder]\n{encoder}"
-        )
+        return self.lidar_here() + f'[imu]\ndevice = "{self.mti.port}"\n[encoder]\n{encoder}'
 
     def simulate(self, seconds):
-        done = self.run_to_end(SCREE, "simulate", self.original, "--seconds", str(seconds),
-                               "--scene", "easy")  # fmt: skip
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.done(SCREE, "simulate", self.original, "--seconds", str(seconds), "--scene", "easy")
 
     def record(self, *arguments, **options):
         """Starts it, and waits until it listens."""
@@ -53,19 +46,12 @@ class RecordTest(ProgramTest):
         player.stop()
         time.sleep(0.3)  # until what was sent last is read
 
-    def decode(self, capture, sensor, *arguments):
-        out = self.path("decoded.csv")
-        done = self.run_to_end(SCREE, "decode", capture, "--sensor", sensor, "--out", out, *arguments)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        with open(out, newline="") as file:
-            return list(csv.reader(file))
-
     def assert_same_values(self, sensor, *arguments):
         """All but the times, which are those of the recording's clock."""
-        recorded = self.decode(self.recording, sensor)
-        original = self.decode(self.original, sensor, *arguments)
+        recorded = self.decoded(SCREE, self.recording, sensor)
+        original = self.decoded(SCREE, self.original, sensor, *arguments)
         self.assertGreater(len(original), 100)
-        self.assertEqual([row[1:] for row in recorded], [row[1:] for row in original])
+        self.assertEqual(recorded, original)
 
     def test_what_is_recorded_decodes_to_the_same_values(self):
         self.simulate(2)
@@ -77,11 +63,9 @@ class RecordTest(ProgramTest):
         self.assertRegex(summary, r"recorded \d+\.\d s; lidar \d+ packets, .* MB; imu \d+ reads, .* kB; can")
         self.assert_same_values("lidar")
         self.assert_same_values("imu")
-        info = self.run_to_end(SCREE, "info", self.recording)
-        self.assertEqual(info.returncode, 0, info.stderr)
+        info = self.done(SCREE, "info", self.recording)
         self.assertIn("from 127.0.0.1", info.stdout)
-        lists = self.run_to_end(SCREE, "detect", self.recording, "--out", self.path("lists.jsonl"))
-        self.assertEqual(lists.returncode, 0, lists.stderr)
+        lists = self.done(SCREE, "detect", self.recording, "--out", self.path("lists.jsonl"))
         self.assertNotIn("IMU", lists.stderr)
 
     def test_frames_of_the_can_bus_are_recorded(self):
@@ -126,8 +110,7 @@ class RecordTest(ProgramTest):
         process.send_signal(signal.SIGINT)
         process.communicate(timeout=PATIENCE)
         shutil.rmtree(self.path("robot"))
-        lists = self.run_to_end(SCREE, "detect", self.recording, "--out", self.path("lists.jsonl"))
-        self.assertEqual(lists.returncode, 0, lists.stderr)
+        self.done(SCREE, "detect", self.recording, "--out", self.path("lists.jsonl"))
 
     def test_missing_sensors_are_waited_for_and_said(self):
         self.mti.port = self.path("elsewhere")

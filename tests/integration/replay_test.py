@@ -1,6 +1,5 @@
 """scree replay as a program: python3 replay_test.py SCREED SCREE [TEST ...]"""
 
-import csv
 import json
 import math
 import os
@@ -25,13 +24,6 @@ class ReplayTest(ProgramTest):
     def replay(self, *arguments):
         return [SCREE, "replay", self.capture, "--address", f"127.0.0.1:{self.port}",
                 "--position-port", str(self.position_port), *arguments]  # fmt: skip
-
-    def rows(self, capture, sensor):
-        """What is decoded, without the times, which are those of the clock that recorded it."""
-        out = self.path("decoded.csv")
-        self.done(SCREE, "decode", capture, "--sensor", sensor, "--out", out)
-        with open(out, newline="") as file:
-            return [row[1:] for row in list(csv.reader(file))[1:]]
 
     def record(self, *replayed):
         """What scree record makes of a replay."""
@@ -72,9 +64,9 @@ class ReplayTest(ProgramTest):
         recording, summary = self.record("--serial", self.imu)
         self.assertIn("the encoder is not played: --can", summary)
         for sensor in ["lidar", "imu"]:
-            original = self.rows(self.capture, sensor)
+            original = self.decoded(SCREE, self.capture, sensor)
             self.assertGreater(len(original), 100)
-            self.assertEqual(self.rows(recording, sensor), original)
+            self.assertEqual(self.decoded(SCREE, recording, sensor), original)
 
     def test_frames_go_out_on_a_can_bus(self):
         can, reason = can_socket("vcan0")
@@ -84,14 +76,14 @@ class ReplayTest(ProgramTest):
         self.simulate(1)
         recording, summary = self.record("--can", "vcan0")
         self.assertRegex(summary, r"\d+ frames to vcan0 in")
-        self.assertEqual(self.rows(recording, "encoder"), self.rows(self.capture, "encoder"))
+        self.assertEqual(self.decoded(SCREE, recording, "encoder"), self.decoded(SCREE, self.capture, "encoder"))
 
     def test_a_part_is_replayed(self):
         self.simulate(2)
         recording, _ = self.record("--serial", self.imu, "--from", "0.5", "--to", "1.25",
                                    "--rate", "0.5")  # fmt: skip
         for sensor in ["lidar", "imu"]:
-            original, part = self.rows(self.capture, sensor), self.rows(recording, sensor)
+            original, part = self.decoded(SCREE, self.capture, sensor), self.decoded(SCREE, recording, sensor)
             if sensor == "lidar":  # by packet, which is counted from the part's begin
                 original, part = ([row[1:] for row in rows] for rows in (original, part))
             first = original.index(part[0])

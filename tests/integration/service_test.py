@@ -25,12 +25,8 @@ class ServiceTest(ProgramTest):
         self.manager.bind(self.path("notify"))
 
     def configure(self, more):
-        text = (
-            f'[lidar]\naddress = "127.0.0.1"\nport = {self.port}\n'
-            f"position_port = {self.position_port}\n"
-            f'[imu]\ndevice = "{self.path("imu")}"\n[lcm]\nurl = "{self.url}"\n'
-        )
-        self.write("robot.toml", text + more)
+        others = f'[imu]\ndevice = "{self.path("imu")}"\n[lcm]\nurl = "{self.url}"\n'
+        self.write("robot.toml", self.lidar_here() + others + more)
 
     def start_service(self):
         told = {"NOTIFY_SOCKET": self.path("notify"), "WATCHDOG_USEC": str(int(WATCHDOG * 1e6))}

@@ -6,27 +6,20 @@ import math
 import os
 import re
 import struct
-import subprocess
 import sys
-import tempfile
 import tomllib
-import unittest
+
+from pcap_file import SERIAL, pcap_records
+from programs import ProgramTest, main
 
 SCREE = sys.argv[1]
 GRAVITY = 9.81
 
 
 def serial_bytes(path):
-    """The stream of a pcap file of link type 147, and the number of its records."""
-    with open(path, "rb") as file:
-        data = file.read()
-    assert struct.unpack_from("<I", data, 20)[0] == 147
-    stream, at, records = b"", 24, 0
-    while at < len(data):
-        size = struct.unpack_from("<I", data, at + 8)[0]
-        stream += data[at + 16 : at + 16 + size]
-        at, records = at + 16 + size, records + 1
-    return stream, records
+    """The stream of a capture of the IMU's port, and the number of its records."""
+    reads = [data for _, data in pcap_records(path, SERIAL)]
+    return b"".join(reads), len(reads)
 
 
 def imu_samples(stream):
@@ -67,21 +60,17 @@ def tilt_from(quaternion):
     return 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)
 
 
-class SimulateTest(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = folder.name
-
+class SimulateTest(ProgramTest):
     def simulate(self, *arguments):
-        capture = os.path.join(self.folder, "capture")
-        done = subprocess.run([SCREE, "simulate", capture, *arguments], capture_output=True, text=True,
-                              timeout=200)  # fmt: skip
-        self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)
+        capture = self.path("capture")
+        self.assertEqual(self.done(SCREE, "simulate", capture, *arguments).stdout, "")
         with open(os.path.join(capture, "truth.json")) as file:
             truth = json.load(file)
         with open(os.path.join(capture, "scree.toml"), "rb") as file:
             return capture, truth, tomllib.load(file)
+
+    def info(self, capture):
+        return json.loads(self.done(SCREE, "info", capture, "--json").stdout)
 
     def path_length(self, truth):
         points = [pose["p"] for pose in truth["poses"]]
@@ -163,8 +152,7 @@ class SimulateTest(unittest.TestCase):
     def test_options_show_in_the_capture(self):
         capture, truth, _ = self.simulate("--seconds", "1", "--seed", "3", "--rate", "5", "--dual",
                                           "--pps", "--packet-loss", "0.1", "--at-rest")  # fmt: skip
-        run = subprocess.run([SCREE, "info", capture, "--json"], capture_output=True, text=True, check=True)
-        info = json.loads(run.stdout)
+        info = self.info(capture)
         self.assertEqual(list(info["return_modes"]), ["dual"])
         self.assertAlmostEqual(info["rpm"], 300, delta=3)
         self.assertGreater(info["lost"], 60)
@@ -174,8 +162,7 @@ class SimulateTest(unittest.TestCase):
     def test_faults_lie_between_the_sensors_and_the_host(self):
         capture, truth, config = self.simulate("--seconds", "15", "--seed", "4", "--faults",
                                                "--scene", "easy", "--reverse")  # fmt: skip
-        run = subprocess.run([SCREE, "info", capture, "--json"], capture_output=True, text=True, check=True)
-        lost = json.loads(run.stdout)["lost"]
+        lost = self.info(capture)["lost"]
         self.assertAlmostEqual(lost / (15 * 754), 0.01, delta=0.004)
 
         stream, _ = serial_bytes(os.path.join(capture, "imu.pcap"))
@@ -219,9 +206,8 @@ class SimulateTest(unittest.TestCase):
         for arguments in (["--scene", "swamp"], ["--speed", "9"], ["--rate", "50"],
                           ["--faults", "--seconds", "5"], ["--imu-gap", "3"],
                           ["--imu-corruption", "2"], ["--at-rest", "--reverse"]):  # fmt: skip
-            done = subprocess.run([SCREE, "simulate", self.folder, *arguments], capture_output=True)
-            self.assertEqual(done.returncode, 2, arguments)
+            self.done(SCREE, "simulate", self.folder, *arguments, code=2)
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1] + sys.argv[2:])
+    main(sys.argv[2:])

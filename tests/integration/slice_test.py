@@ -4,7 +4,7 @@ import json
 import os
 import sys
 
-from live_sensors import pcap_records
+from pcap_file import pcap_records
 from programs import ProgramTest, main
 
 SCREE = sys.argv[1]

@@ -3,25 +3,17 @@
 import csv
 import os
 import struct
-import subprocess
 import sys
-import tempfile
-import unittest
 import zlib
+
+from programs import ProgramTest, main
 
 SCREE = sys.argv[1]
 
 
-class StudyTest(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = folder.name
-
+class StudyTest(ProgramTest):
     def scree(self, *arguments, code=0):
-        done = subprocess.run([SCREE, *arguments], capture_output=True, text=True, timeout=250)
-        self.assertEqual(done.returncode, code, done.stderr)
-        return done
+        return self.done(SCREE, *arguments, code=code)
 
     def study(self, name, table, *pictures, points=300000):
         out = os.path.join(self.folder, "new", "folder")
@@ -94,13 +86,13 @@ class StudyTest(unittest.TestCase):
         said = self.scree("study", "drives", "--out", self.folder, "--seeds", "1",
                           "--seconds", "2").stdout  # fmt: skip
         scenes = ["easy", "rolling", "rough", "crater", "ditch", "grass", "mixed"]
-        with open(os.path.join(self.folder, "drives.txt")) as file:
+        with open(self.path("drives.txt")) as file:
             text = file.read()
         self.assertIn(text, said)
         for goal in ("f1", "coverage", "drift_largest", "yaw_largest", "map_rms_m"):
             self.assertRegex(text, rf"(?m)^{goal} +[<>]= \S+ +\d\S* +\w+ +(not )?met")
         self.assertRegex(text, r"cost_of_faults .* not measured")  # too short for faults
-        with open(os.path.join(self.folder, "drives.csv"), newline="") as file:
+        with open(self.path("drives.csv"), newline="") as file:
             rows = list(csv.DictReader(file))
         self.assertEqual([row["scene"] for row in rows], scenes)
         for row in rows:
@@ -109,7 +101,7 @@ class StudyTest(unittest.TestCase):
             self.assertGreater(float(row["map_points"]), 1000)
             self.assertLess(float(row["map_rms_m"]), 0.1)
             self.assertEqual(row["f1_with_faults"], "")
-        self.check_png(os.path.join(self.folder, "drives.png"))
+        self.check_png(self.path("drives.png"))
 
     def test_hardly_any_points_are_no_crash(self):
         for name in ("training", "clustering", "seed-distance", "stages", "result", "detection"):
@@ -128,5 +120,4 @@ class StudyTest(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    outcome = unittest.main(argv=sys.argv[:1] + sys.argv[2:], exit=False).result
-    sys.exit(not outcome.wasSuccessful())
+    main(sys.argv[2:])

@@ -3,6 +3,8 @@
 import math
 import struct
 
+from pcap_file import write_pcap
+
 ELEVATIONS_DEG = [-15, 1, -13, 3, -11, 5, -9, 7, -7, 9, -5, 11, -3, 13, -1, 15]
 PACKET_NS = 1_327_104
 SENSOR_HEIGHT_M = 0.95
@@ -35,13 +37,13 @@ def frame(payload, port):
     return b"\xff" * 6 + bytes(6) + b"\x08\x00" + ip + udp
 
 
+def records(seconds):
+    for number in range(int(seconds * 1e9 / PACKET_NS)):
+        time_ns = 1_598_601_600 * 1_000_000_000 + number * PACKET_NS
+        yield time_ns, frame(data_packet(number), 2368)
+        if number % 10 == 0:
+            yield time_ns, frame(position_packet(number), 8308)
+
+
 def write_capture(path, seconds):
-    with open(path, "wb") as file:
-        file.write(struct.pack("<IHHiIII", 0xA1B23C4D, 2, 4, 0, 0, 65535, 1))
-        for number in range(int(seconds * 1e9 / PACKET_NS)):
-            frames = [frame(data_packet(number), 2368)]
-            if number % 10 == 0:
-                frames.append(frame(position_packet(number), 8308))
-            at = 1_598_601_600 * 1_000_000_000 + number * PACKET_NS
-            for each in frames:
-                file.write(struct.pack("<IIII", at // 10**9, at % 10**9, len(each), len(each)) + each)
+    write_pcap(path, records(seconds))

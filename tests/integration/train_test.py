@@ -2,9 +2,8 @@
 
 import re
 import sys
-import unittest
 
-from programs import ProgramTest
+from programs import ProgramTest, main
 
 SCREE = sys.argv[1]
 SMALL = ("--training", "1", "--validation", "1", "--held-out", "1", "--hidden", "3")
@@ -42,4 +41,4 @@ class TrainTest(ProgramTest):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=[sys.argv[0], *sys.argv[2:]])
+    main(sys.argv[2:])
