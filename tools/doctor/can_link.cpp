@@ -73,12 +73,13 @@ std::optional<CanLink> parse_can_link(Bytes answer) {
   return link;
 }
 
-Finding judge_can_link(const std::string& interface, const std::optional<CanLink>& link) {
+Finding check_can_link(const std::string& interface, const std::optional<CanLink>& link) {
   const std::string subject = "CAN interface";
   if (!link) {
-    return wrong(subject, fmt::format("there is no {}: plug the adapter in, or set "
-                                      "encoder.interface to one that `ip link` lists",
-                                      interface));
+    return wrong(subject,
+                 fmt::format("there is no {}: plug the adapter in, or set encoder.interface to "
+                             "one that `ip link` lists",
+                             interface));
   }
   if (!link->is_can) {
     return wrong(subject, fmt::format("{} is no CAN interface: set encoder.interface", interface));
@@ -102,7 +103,7 @@ Finding judge_can_link(const std::string& interface, const std::optional<CanLink
                                  interface, link->bit_rate, link->restart_ms));
 }
 
-Finding judge_can_traffic(const std::string& interface, std::int64_t can_id,
+Finding check_can_traffic(const std::string& interface, std::int64_t can_id,
                           const CanTraffic& traffic) {
   const std::string subject = "encoder";
   if (!traffic.bus_advice.empty()) return wrong(subject, interface + ": " + traffic.bus_advice);

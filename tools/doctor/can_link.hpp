@@ -31,8 +31,8 @@ struct CanTraffic {
 };
 
 /// @param link nothing: there is no such interface
-Finding judge_can_link(const std::string& interface, const std::optional<CanLink>& link);
-Finding judge_can_traffic(const std::string& interface, std::int64_t can_id,
+Finding check_can_link(const std::string& interface, const std::optional<CanLink>& link);
+Finding check_can_traffic(const std::string& interface, std::int64_t can_id,
                           const CanTraffic& traffic);
 
 }  // namespace scree

@@ -1,4 +1,4 @@
-#include "doctor/judge_system.hpp"
+#include "doctor/check_system.hpp"
 
 #include <linux/capability.h>
 #include <spdlog/fmt/fmt.h>
@@ -29,7 +29,7 @@ Rights rights_of(std::string_view limits, std::string_view status) {
   return rights;
 }
 
-Finding judge_priority(const Running& screed, const Rights& own) {
+Finding check_priority(const Running& screed, const Rights& own) {
   const std::string subject = "real time";
   if (screed.is_running) {
     return screed.has_real_time
@@ -44,7 +44,7 @@ Finding judge_priority(const Running& screed, const Rights& own) {
                                     kPriority, kByHand, kPriority));
 }
 
-Finding judge_memory(const Running& screed, const Rights& own) {
+Finding check_memory(const Running& screed, const Rights& own) {
   const std::string subject = "memory";
   if (screed.is_running) {
     return screed.locked_kilobytes > 0
@@ -60,7 +60,7 @@ Finding judge_memory(const Running& screed, const Rights& own) {
                            own.locked_bytes >> 20, kByHand));
 }
 
-Finding judge_clock(int state, std::int64_t error_us) {
+Finding check_clock(int state, std::int64_t error_us) {
   const std::string subject = "clock";
   if (state == TIME_ERROR) {
     return wrong(subject,
@@ -71,7 +71,7 @@ Finding judge_clock(int state, std::int64_t error_us) {
                                  static_cast<double>(error_us) * 1e-3));
 }
 
-Finding judge_serial(const std::string& device, const SerialFacts& facts) {
+Finding check_serial(const std::string& device, const SerialFacts& facts) {
   const std::string subject = "serial port";
   if (!facts.exists) {
     return wrong(subject,
@@ -96,7 +96,7 @@ Finding judge_serial(const std::string& device, const SerialFacts& facts) {
                                  facts.latency_timer ? ", and hands bytes on after 1 ms" : ""));
 }
 
-Finding judge_sensor(const std::string& subject, const sensor_health_t& health,
+Finding check_sensor(const std::string& subject, const sensor_health_t& health,
                      const std::string& advice) {
   const std::string source = health.source.empty() ? "" : " from " + health.source;
   switch (health.state) {

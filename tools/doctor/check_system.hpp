@@ -24,11 +24,11 @@ struct Running {
   bool has_real_time = false;  ///< any thread of it
   std::uint64_t locked_kilobytes = 0;
 };
-Finding judge_priority(const Running& screed, const Rights& own);
-Finding judge_memory(const Running& screed, const Rights& own);
+Finding check_priority(const Running& screed, const Rights& own);
+Finding check_memory(const Running& screed, const Rights& own);
 
 /// @param state what adjtimex() returned  @param error_us its estimate of the greatest error
-Finding judge_clock(int state, std::int64_t error_us);
+Finding check_clock(int state, std::int64_t error_us);
 
 /// A serial port, as it stands under /dev and /sys.
 struct SerialFacts {
@@ -37,10 +37,10 @@ struct SerialFacts {
   std::optional<int> latency_timer;  ///< milliseconds; nothing where the driver has none
   std::string timer_file;            ///< that it was read from
 };
-Finding judge_serial(const std::string& device, const SerialFacts& facts);
+Finding check_serial(const std::string& device, const SerialFacts& facts);
 
 /// What screed says of a sensor. @param advice what to look at where nothing comes
-Finding judge_sensor(const std::string& subject, const sensor_health_t& health,
+Finding check_sensor(const std::string& subject, const sensor_health_t& health,
                      const std::string& advice);
 
 }  // namespace scree

@@ -70,7 +70,7 @@ bool iptables_lets_in(std::string_view rules, const std::string& port) {
 
 }  // namespace
 
-Finding judge_firewall(std::string_view nft, std::string_view iptables, int port) {
+Finding check_firewall(std::string_view nft, std::string_view iptables, int port) {
   const std::string subject = "firewall";
   const std::string number = std::to_string(port);
   if (!nft_lets_in(nft, number)) {

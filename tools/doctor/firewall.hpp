@@ -12,6 +12,6 @@ namespace scree {
 /// the port.
 /// @param nft what `nft list ruleset` prints, which has iptables-nft's rules too
 /// @param iptables what `iptables -S INPUT` prints of the older tables
-Finding judge_firewall(std::string_view nft, std::string_view iptables, int port);
+Finding check_firewall(std::string_view nft, std::string_view iptables, int port);
 
 }  // namespace scree

@@ -49,14 +49,14 @@ std::string why_not_heard(const LidarSettings& lidar, const LidarTraffic& traffi
       fmt::format("packets of {} bytes from {}", kind.size, ipv4_text(kind.sender));
   if (!is_for(kind, traffic.own_addresses)) {
     return fmt::format(
-        "{} go to {}, which is no address of this computer (it has {}): set the "
-        "destination on the sensor's web page",
+        "{} go to {}, which is no address of this computer (it has {}): "
+        "set the destination on the sensor's web page",
         what, ipv4_text(kind.destination), addresses(traffic.own_addresses));
   }
   if (kind.port != lidar.port) {
     return fmt::format(
-        "{} go to UDP port {}: set lidar.port = {}, or the port on the sensor's web "
-        "page",
+        "{} go to UDP port {}: set lidar.port = {}, or the port on the "
+        "sensor's web page",
         what, kind.port, kind.port);
   }
   return fmt::format(
@@ -80,7 +80,7 @@ std::string nothing_came(const LidarSettings& lidar, const LidarTraffic& traffic
 
 }  // namespace
 
-Finding judge_lidar_traffic(const LidarSettings& lidar, const LidarTraffic& traffic) {
+Finding check_lidar_traffic(const LidarSettings& lidar, const LidarTraffic& traffic) {
   const std::string subject = "lidar";
   if (traffic.heard.empty()) return wrong(subject, nothing_came(lidar, traffic));
   const auto is_wanted = [&](const DatagramKind& kind) {

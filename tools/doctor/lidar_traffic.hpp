@@ -36,6 +36,6 @@ struct LidarTraffic {
 };
 
 /// From whom the lidar's packets come and how many, or why they do not.
-Finding judge_lidar_traffic(const LidarSettings& lidar, const LidarTraffic& traffic);
+Finding check_lidar_traffic(const LidarSettings& lidar, const LidarTraffic& traffic);
 
 }  // namespace scree

@@ -29,7 +29,7 @@ Listening::Listening(const Settings& settings, bool is_screed_running)
         });
     if (subscriber) subscriber_ = std::move(*subscriber);
   } else {
-    // Of any sender: one that lidar.sender leaves out must be seen to be named.
+    // Packets of any sender count: one that lidar.sender leaves out must be seen to be named.
     auto port = UdpReceiver::open(settings.lidar.address, settings.lidar.port, "");
     if (port) {
       port_ = std::move(*port);
@@ -119,8 +119,8 @@ Finding Listening::imu() const {
   const std::uint64_t messages = imu_stream_.counters().accepted;
   if (messages == 0) {
     return wrong(subject, settings_.imu.device +
-                              " is open, but no message of an Xsens MTi comes: check imu.baud and "
-                              "imu.configure");
+                              " is open, but no message of an Xsens MTi comes: "
+                              "check imu.baud and imu.configure");
   }
   return ok(subject, fmt::format("it answers and measures, {} messages came", messages));
 }

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "doctor/can_link.hpp"
-#include "doctor/judge_system.hpp"
+#include "doctor/check_system.hpp"
 #include "doctor/lidar_traffic.hpp"
 #include "scree/core/descriptor.hpp"
 
-// What the doctor asks the kernel. Nothing here judges.
+// What the doctor asks the kernel. Nothing here draws conclusions.
 namespace scree::cli {
 
 /// A whole file, empty where it cannot be read.

@@ -30,7 +30,7 @@ std::string_view status_value(std::string_view proc_status, std::string_view nam
 /// Bit number `capability` (CAP_SYS_NICE ...) of the effective capabilities.
 bool has_capability(std::string_view proc_status, int capability);
 
-/// Of /proc/PID/task/TID/stat: whether the thread has a real-time policy.
+/// Whether a thread has a real-time policy, by its /proc/PID/task/TID/stat.
 bool is_real_time(std::string_view proc_stat);
 
 }  // namespace scree

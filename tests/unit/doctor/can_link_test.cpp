@@ -85,40 +85,40 @@ TEST(CanLink, SurvivesAnyBytes) {
   }
 }
 
-TEST(CanLink, IsJudged) {
+TEST(CanLink, IsChecked) {
   CanLink link;
-  EXPECT_THAT(judge_can_link("can0", std::nullopt).text, HasSubstr("there is no can0"));
-  EXPECT_THAT(judge_can_link("eth0", link).text, HasSubstr("eth0 is no CAN interface"));
+  EXPECT_THAT(check_can_link("can0", std::nullopt).text, HasSubstr("there is no can0"));
+  EXPECT_THAT(check_can_link("eth0", link).text, HasSubstr("eth0 is no CAN interface"));
   link.is_can = true;
   link.kind = "can";
-  EXPECT_THAT(judge_can_link("can0", link).text,
+  EXPECT_THAT(check_can_link("can0", link).text,
               AllOf(HasSubstr("is down"), HasSubstr("ip link set can0 up type can bitrate")));
   link.is_up = true;
   link.bit_rate = 250000;
-  EXPECT_THAT(judge_can_link("can0", link).text,
+  EXPECT_THAT(check_can_link("can0", link).text,
               AllOf(HasSubstr("stays off the bus"), HasSubstr("bitrate 250000 restart-ms")));
   link.restart_ms = 100;
-  const Finding good = judge_can_link("can0", link);
+  const Finding good = check_can_link("can0", link);
   EXPECT_EQ(good.verdict, Verdict::ok);
   EXPECT_THAT(good.text, HasSubstr("250000 bit/s"));
   link.kind = "vcan";
-  EXPECT_EQ(judge_can_link("vcan0", link).verdict, Verdict::ok);
+  EXPECT_EQ(check_can_link("vcan0", link).verdict, Verdict::ok);
 }
 
-TEST(CanTraffic, IsJudged) {
+TEST(CanTraffic, IsChecked) {
   CanTraffic traffic;
   traffic.seconds = 2;
-  EXPECT_THAT(judge_can_traffic("can0", 0x1A0, traffic).text, HasSubstr("no frame on can0 in 2 s"));
+  EXPECT_THAT(check_can_traffic("can0", 0x1A0, traffic).text, HasSubstr("no frame on can0 in 2 s"));
   traffic.others = 5;
   traffic.other_id = 0x123;
-  EXPECT_THAT(judge_can_traffic("can0", 0x1A0, traffic).text,
+  EXPECT_THAT(check_can_traffic("can0", 0x1A0, traffic).text,
               AllOf(HasSubstr("encoder.can_id = 0x1A0"), HasSubstr("5 others, as 0x123")));
   traffic.wanted = 200;
-  const Finding good = judge_can_traffic("can0", 0x1A0, traffic);
+  const Finding good = check_can_traffic("can0", 0x1A0, traffic);
   EXPECT_EQ(good.verdict, Verdict::ok);
   EXPECT_THAT(good.text, HasSubstr("100 frames a second"));
   traffic.bus_advice = "look at the cable";
-  EXPECT_EQ(judge_can_traffic("can0", 0x1A0, traffic).verdict, Verdict::wrong);
+  EXPECT_EQ(check_can_traffic("can0", 0x1A0, traffic).verdict, Verdict::wrong);
 }
 
 }  // namespace

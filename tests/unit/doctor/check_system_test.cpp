@@ -1,4 +1,4 @@
-#include "doctor/judge_system.hpp"
+#include "doctor/check_system.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -26,30 +26,30 @@ TEST(Rights, AreTheLimitsOrTheCapabilities) {
   EXPECT_EQ(rights.locked_bytes, kUnlimited);
 }
 
-TEST(Rights, AreJudgedByWhatRunsElseByWhatMay) {
+TEST(Rights, AreCheckedByWhatRunsElseByWhatMay) {
   const Running none;
-  EXPECT_EQ(judge_priority(none, {40, 0}).verdict, Verdict::ok);
-  EXPECT_THAT(judge_priority(none, {0, 0}).text, HasSubstr("rtprio 40"));
-  EXPECT_EQ(judge_memory(none, {0, kUnlimited}).verdict, Verdict::ok);
-  EXPECT_THAT(judge_memory(none, {0, 8 << 20}).text, HasSubstr("only 8 MB"));
+  EXPECT_EQ(check_priority(none, {40, 0}).verdict, Verdict::ok);
+  EXPECT_THAT(check_priority(none, {0, 0}).text, HasSubstr("rtprio 40"));
+  EXPECT_EQ(check_memory(none, {0, kUnlimited}).verdict, Verdict::ok);
+  EXPECT_THAT(check_memory(none, {0, 8 << 20}).text, HasSubstr("only 8 MB"));
 
   const Rights all{99, kUnlimited};
-  EXPECT_EQ(judge_priority({true, true, 0}, {}).verdict, Verdict::ok);
-  EXPECT_EQ(judge_priority({true, false, 0}, all).verdict, Verdict::wrong);
-  EXPECT_THAT(judge_memory({true, false, 204800}, {}).text, HasSubstr("200 MB"));
-  EXPECT_EQ(judge_memory({true, true, 0}, all).verdict, Verdict::wrong);
+  EXPECT_EQ(check_priority({true, true, 0}, {}).verdict, Verdict::ok);
+  EXPECT_EQ(check_priority({true, false, 0}, all).verdict, Verdict::wrong);
+  EXPECT_THAT(check_memory({true, false, 204800}, {}).text, HasSubstr("200 MB"));
+  EXPECT_EQ(check_memory({true, true, 0}, all).verdict, Verdict::wrong);
 }
 
 TEST(Clock, MustBeSetByOthers) {
-  EXPECT_THAT(judge_clock(TIME_ERROR, 16'000'000).text, HasSubstr("chrony"));
-  const Finding good = judge_clock(TIME_OK, 1500);
+  EXPECT_THAT(check_clock(TIME_ERROR, 16'000'000).text, HasSubstr("chrony"));
+  const Finding good = check_clock(TIME_OK, 1500);
   EXPECT_EQ(good.verdict, Verdict::ok);
   EXPECT_THAT(good.text, HasSubstr("1.5 ms"));
 }
 
-TEST(Serial, IsJudged) {
+TEST(Serial, IsChecked) {
   SerialFacts facts;
-  const auto text = [&] { return judge_serial("/dev/imu", facts).text; };
+  const auto text = [&] { return check_serial("/dev/imu", facts).text; };
   EXPECT_THAT(text(), HasSubstr("there is no /dev/imu"));
   facts.exists = true;
   EXPECT_THAT(text(), HasSubstr("no serial port"));
@@ -61,18 +61,18 @@ TEST(Serial, IsJudged) {
   facts.timer_file = "/sys/class/tty/ttyUSB0/device/latency_timer";
   EXPECT_THAT(text(), AllOf(HasSubstr("every 16 ms"), HasSubstr("echo 1 > " + facts.timer_file)));
   facts.latency_timer = 1;
-  EXPECT_EQ(judge_serial("/dev/imu", facts).verdict, Verdict::ok);
+  EXPECT_EQ(check_serial("/dev/imu", facts).verdict, Verdict::ok);
   facts.latency_timer.reset();
-  EXPECT_EQ(judge_serial("/dev/imu", facts).verdict, Verdict::ok);
+  EXPECT_EQ(check_serial("/dev/imu", facts).verdict, Verdict::ok);
 }
 
-TEST(Sensor, IsJudgedByItsHealth) {
+TEST(Sensor, IsCheckedByItsHealth) {
   sensor_health_t health{};
   health.source = "192.168.1.201";
-  const auto text = [&] { return judge_sensor("lidar", health, "look there").text; };
+  const auto text = [&] { return check_sensor("lidar", health, "look there").text; };
   health.state = sensor_health_t::OK;
   health.rate = 754;
-  EXPECT_EQ(judge_sensor("lidar", health, "").verdict, Verdict::ok);
+  EXPECT_EQ(check_sensor("lidar", health, "").verdict, Verdict::ok);
   EXPECT_THAT(text(), HasSubstr("754 messages a second from 192.168.1.201"));
   health.state = sensor_health_t::SLOW;
   health.expected_rate = 1000;

@@ -13,15 +13,15 @@ using Verdict = Finding::Verdict;
 
 /// A ruleset as `nft list ruleset` prints it.
 std::string ruleset(const std::string& policy, const std::string& rule) {
-  return "table inet filter {\n\tchain input {\n\t\ttype filter hook input priority filter; "
-         "policy " +
+  return "table inet filter {\n\tchain input {\n"
+         "\t\ttype filter hook input priority filter; policy " +
          policy + ";\n\t\tct state established,related accept\n\t\t" + rule +
          "\n\t}\n\n\tchain forward {\n\t\ttype filter hook forward priority filter; policy drop;\n"
          "\t}\n}\n";
 }
 
 Verdict verdict_of(const std::string& nft, const std::string& iptables = "") {
-  return judge_firewall(nft, iptables, 2368).verdict;
+  return check_firewall(nft, iptables, 2368).verdict;
 }
 
 TEST(Firewall, WithoutRulesAllComesIn) {
@@ -43,7 +43,7 @@ TEST(Firewall, ARuleMayDropThePort) {
   EXPECT_EQ(verdict_of(ruleset("accept", "udp dport 2368 drop")), Verdict::wrong);
   EXPECT_EQ(verdict_of("", "-P INPUT ACCEPT\n-A INPUT -p udp --dport 2368 -j DROP\n"),
             Verdict::wrong);
-  EXPECT_THAT(judge_firewall(ruleset("accept", "udp dport 2368 reject"), "", 2368).text,
+  EXPECT_THAT(check_firewall(ruleset("accept", "udp dport 2368 reject"), "", 2368).text,
               HasSubstr("UDP port 2368"));
 }
 

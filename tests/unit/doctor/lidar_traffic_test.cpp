@@ -26,7 +26,7 @@ protected:
     traffic_.seen = DatagramCounts{{{kSensor, destination, port, 1206}, 1508}};
   }
   std::string wrong() const {
-    const Finding finding = judge_lidar_traffic(lidar_, traffic_);
+    const Finding finding = check_lidar_traffic(lidar_, traffic_);
     EXPECT_EQ(finding.verdict, Verdict::wrong);
     return finding.text;
   }
@@ -37,7 +37,7 @@ protected:
 
 TEST_F(LidarTrafficTest, PacketsAreCounted) {
   hear(1206);
-  const Finding finding = judge_lidar_traffic(lidar_, traffic_);
+  const Finding finding = check_lidar_traffic(lidar_, traffic_);
   EXPECT_EQ(finding.verdict, Verdict::ok);
   EXPECT_THAT(finding.text, HasSubstr("754 packets a second of 1206 bytes from 192.168.1.201"));
 }

@@ -41,13 +41,13 @@ public:
     find_screed();
     Listening listening(settings_, is_running());
     listening.listen(options_.seconds);
-    judge_daemon(listening);
-    judge_multicast();
-    judge_lidar(listening);
-    judge_imu(listening);
-    judge_encoder(listening);
-    judge_lines();
-    judge_computer();
+    check_daemon(listening);
+    check_multicast();
+    check_lidar(listening);
+    check_imu(listening);
+    check_encoder(listening);
+    check_lines();
+    check_computer();
     return static_cast<int>(
         std::ranges::count(findings_, Finding::Verdict::wrong, &Finding::verdict));
   }
@@ -67,9 +67,8 @@ private:
   void read_config() {
     auto loaded = load_settings(options_.config);
     if (!loaded) {
-      return add(wrong("configuration", loaded.error().message +
-                                            "; until --config names one this goes by the "
-                                            "defaults"));
+      const std::string goes_on = "; until --config names one this goes by the defaults";
+      return add(wrong("configuration", loaded.error().message + goes_on));
     }
     const auto encoder = encoder::with_dbc(loaded->encoder, options_.config);
     settings_ = std::move(*loaded);
@@ -84,7 +83,7 @@ private:
     if (owner_ && owner_->process.name == "screed") screed_ = owner_->process;
   }
 
-  void judge_port(const char* subject, const char* key, int port,
+  void check_port(const char* subject, const char* key, int port,
                   const std::optional<PortOwner>& owner) {
     if (!owner) return add(ok(subject, fmt::format("UDP port {} is free", port)));
     const std::string where = fmt::format("{}:{}", ipv4_text(owner->address), port);
@@ -95,14 +94,14 @@ private:
                                    named(owner->process), key)));
   }
 
-  void judge_daemon(const Listening& listening) {
+  void check_daemon(const Listening& listening) {
     if (!owner_ && !listening.port_problem().empty()) {
       add(wrong("UDP port", listening.port_problem()));
     } else {
-      judge_port("UDP port", "lidar.port", settings_.lidar.port, owner_);
+      check_port("UDP port", "lidar.port", settings_.lidar.port, owner_);
     }
     const int position = settings_.lidar.position_port;
-    judge_port("position port", "lidar.position_port", position, owner_of_port(position));
+    check_port("position port", "lidar.position_port", position, owner_of_port(position));
     if (!screed_) return add(ok("screed", "it does not run: this looks at the sensors itself"));
     if (const auto& health = listening.health()) {
       return add(health->state == health_t::OK ? ok("screed", "it runs, and sees")
@@ -113,19 +112,19 @@ private:
                                     settings_.lcm.url)));
   }
 
-  void judge_multicast() {
+  void check_multicast() {
     const auto routed = check_multicast(settings_.lcm.url);
     add(routed ? ok("LCM", settings_.lcm.url + " has a route")
                : wrong("LCM", routed.error().message));
   }
 
-  void judge_lidar(const Listening& listening) {
+  void check_lidar(const Listening& listening) {
     const auto& health = listening.health();
     const bool comes = health && health->lidar.state != sensor_health_t::NEVER_SEEN &&
                        health->lidar.state != sensor_health_t::SILENT;
     const Finding lidar =
-        comes ? judge_sensor("lidar", health->lidar, "look at lidar.model and at the network")
-              : judge_lidar_traffic(settings_.lidar, listening.lidar());
+        comes ? check_sensor("lidar", health->lidar, "look at lidar.model and at the network")
+              : check_lidar_traffic(settings_.lidar, listening.lidar());
     const bool is_well = lidar.verdict == Finding::Verdict::ok;
     if (owner_ && !screed_) {
       add(unknown("lidar", "it cannot be heard while another program has its port"));
@@ -140,17 +139,17 @@ private:
     if (programs.empty()) {
       return add(unknown("firewall", "neither nft nor iptables is installed to read its rules"));
     }
-    add(judge_firewall(output_of("nft list ruleset 2> /dev/null"),
+    add(check_firewall(output_of("nft list ruleset 2> /dev/null"),
                        output_of("iptables -S INPUT 2> /dev/null"), settings_.lidar.port));
   }
 
-  void judge_imu(const Listening& listening) {
+  void check_imu(const Listening& listening) {
     const std::string& device = settings_.imu.device;
-    const Finding port = judge_serial(device, look_at_serial(device));
+    const Finding port = check_serial(device, look_at_serial(device));
     add(port);
     if (is_running()) {
       if (const auto& health = listening.health()) {
-        add(judge_sensor("IMU", health->imu, "check its cable and power, and imu.baud"));
+        add(check_sensor("IMU", health->imu, "check its cable and power, and imu.baud"));
       }
       return;
     }
@@ -161,16 +160,16 @@ private:
     if (port.verdict == Finding::Verdict::ok || listening.imu_measures()) add(listening.imu());
   }
 
-  void judge_encoder(const Listening& listening) {
+  void check_encoder(const Listening& listening) {
     const std::string& interface = settings_.encoder.interface;
-    const Finding link = judge_can_link(interface, look_at_can(interface));
+    const Finding link = check_can_link(interface, look_at_can(interface));
     add(link);
     if (const auto& traffic = listening.encoder()) {
-      add(judge_can_traffic(interface, settings_.encoder.can_id, *traffic));
+      add(check_can_traffic(interface, settings_.encoder.can_id, *traffic));
     }
   }
 
-  void judge_lines() {
+  void check_lines() {
     const GpioSettings& gpio = settings_.gpio;
     const std::array<std::pair<const char*, std::string>, 3> lines = {
         {{"gpio.pps", gpio.pps}, {"gpio.stop", gpio.stop}, {"gpio.heartbeat", gpio.heartbeat}}};
@@ -191,14 +190,14 @@ private:
     if (!is_any) add(ok("GPIO lines", "none is configured"));
   }
 
-  void judge_computer() {
+  void check_computer() {
     const Running screed = how_runs(screed_);
     const Rights own = rights_of(read_text("/proc/self/limits"), read_text("/proc/self/status"));
-    add(judge_priority(screed, own));
-    add(judge_memory(screed, own));
+    add(check_priority(screed, own));
+    add(check_memory(screed, own));
     timex clock{};
     const int state = adjtimex(&clock);
-    add(judge_clock(state, clock.maxerror));
+    add(check_clock(state, clock.maxerror));
   }
 
   DoctorOptions options_;
