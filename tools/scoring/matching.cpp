@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <tuple>
 
 namespace scree {
@@ -68,6 +69,26 @@ std::vector<Candidate> candidates(const std::vector<Shadow>& obstacles,
 
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
+/// One detection at most for each obstacle and the other way round; kNone without a partner.
+struct Matching {
+  std::vector<std::size_t> found_by;  ///< detection of each obstacle
+  std::vector<std::size_t> finds;     ///< obstacle of each detection
+};
+
+/// @param may_match whether the obstacle with this index takes part
+Matching match(std::size_t obstacles, std::size_t detections,
+               const std::vector<Candidate>& nearest_first,
+               const std::function<bool(std::size_t)>& may_match) {
+  Matching matching{std::vector(obstacles, kNone), std::vector(detections, kNone)};
+  for (const auto& [apart, obstacle, detection] : nearest_first) {
+    if (matching.found_by[obstacle] != kNone || matching.finds[detection] != kNone) continue;
+    if (!may_match(obstacle)) continue;
+    matching.found_by[obstacle] = detection;
+    matching.finds[detection] = obstacle;
+  }
+  return matching;
+}
+
 }  // namespace
 
 Comparison compare(const Truth& truth, const Truth::Sight& sight, const ObstacleList& list) {
@@ -81,17 +102,12 @@ Comparison compare(const Truth& truth, const Truth::Sight& sight, const Obstacle
     detections.emplace_back(reported_to_base, each.center, corners_of(each));
   }
   const std::vector<Candidate> nearest_first = candidates(obstacles, detections);
-
-  std::vector<std::size_t> found_by(obstacles.size(), kNone), finds(detections.size(), kNone);
   const auto is_in = [&](const std::vector<int>& ids, std::size_t obstacle) {
     return std::ranges::find(ids, truth.obstacles[obstacle].id) != ids.end();
   };
-  for (const auto& [apart, obstacle, detection] : nearest_first) {
-    if (found_by[obstacle] != kNone || finds[detection] != kNone) continue;
-    if (!is_in(sight.ids, obstacle)) continue;
-    found_by[obstacle] = detection;
-    finds[detection] = obstacle;
-  }
+  const auto [found_by, finds] =
+      match(obstacles.size(), detections.size(), nearest_first,
+            [&](std::size_t obstacle) { return is_in(sight.ids, obstacle); });
 
   Comparison comparison;
   for (const int id : sight.ids) {

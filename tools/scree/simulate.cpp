@@ -87,6 +87,41 @@ void add_faults(CLI::App& command, SimulateOptions& options, CLI::Option* cloud)
       ->excludes(cloud);
 }
 
+void add_drive(CLI::App& command, CaptureSettings& capture, CLI::Option* cloud) {
+  command.add_option("--seconds", capture.seconds, "length of the capture")
+      ->excludes(cloud)
+      ->check(CLI::Range(0.05, 3600.0))
+      ->capture_default_str();
+  auto* at_rest =
+      command.add_flag("--at-rest", capture.at_rest, "the robot stands")->excludes(cloud);
+  command
+      .add_option("--speed", capture.speed,
+                  "mean speed while driving, m/s; without it drawn from 0.4 to 1.6")
+      ->excludes(cloud)
+      ->excludes(at_rest)
+      ->check(CLI::Range(0.3, 2.0));
+  command.add_option("--rate", capture.rate_hz, "turns of the lidar a second")
+      ->excludes(cloud)
+      ->check(CLI::Range(5.0, 20.0))
+      ->capture_default_str();
+  command.add_flag("--dual", capture.dual, "dual returns")->excludes(cloud);
+  command.add_flag("--pps", capture.pps, "the lidar's clock is locked to GPS")->excludes(cloud);
+  command.add_flag("--reverse", capture.reverse, "drives backwards for a stretch")
+      ->excludes(cloud)
+      ->excludes(at_rest);
+}
+
+void add_imu(CLI::App& command, CaptureSettings& capture, CLI::Option* cloud) {
+  command.add_option("--imu-rate", capture.imu_rate_hz, "samples of the IMU a second")
+      ->excludes(cloud)
+      ->check(CLI::Range(100.0, 400.0))
+      ->capture_default_str();
+  command
+      .add_flag("--imu-bursts", capture.imu_bursts,
+                "a USB adapter hands the IMU's bytes on every 16 ms only")
+      ->excludes(cloud);
+}
+
 }  // namespace
 
 void add_simulate(CLI::App& app) {
@@ -99,43 +134,14 @@ void add_simulate(CLI::App& app) {
   command->add_option("--seed", options->capture.seed, "of terrain and noise")
       ->capture_default_str();
   command
-      ->add_option(
-          "--scene", options->scene,
-          "easy, rolling, rough, crater, ditch, grass or mixed; without it a cloud is like "
-          "the paper's")
+      ->add_option("--scene", options->scene,
+                   "easy, rolling, rough, crater, ditch, grass or mixed; "
+                   "without it a cloud is like the paper's")
       ->check([](const std::string& name) {
         return scene_named(name) ? std::string() : "there is no scene " + name;
       });
-  auto& capture = options->capture;
-  command->add_option("--seconds", capture.seconds, "length of the capture")
-      ->excludes(cloud)
-      ->check(CLI::Range(0.05, 3600.0))
-      ->capture_default_str();
-  auto* at_rest =
-      command->add_flag("--at-rest", capture.at_rest, "the robot stands")->excludes(cloud);
-  command
-      ->add_option("--speed", capture.speed,
-                   "mean speed while driving, m/s; without it drawn from 0.4 to 1.6")
-      ->excludes(cloud)
-      ->excludes(at_rest)
-      ->check(CLI::Range(0.3, 2.0));
-  command->add_option("--rate", capture.rate_hz, "turns of the lidar a second")
-      ->excludes(cloud)
-      ->check(CLI::Range(5.0, 20.0))
-      ->capture_default_str();
-  command->add_flag("--dual", capture.dual, "dual returns")->excludes(cloud);
-  command->add_flag("--pps", capture.pps, "the lidar's clock is locked to GPS")->excludes(cloud);
-  command->add_flag("--reverse", capture.reverse, "drives backwards for a stretch")
-      ->excludes(cloud)
-      ->excludes(at_rest);
-  command->add_option("--imu-rate", capture.imu_rate_hz, "samples of the IMU a second")
-      ->excludes(cloud)
-      ->check(CLI::Range(100.0, 400.0))
-      ->capture_default_str();
-  command
-      ->add_flag("--imu-bursts", capture.imu_bursts,
-                 "a USB adapter hands the IMU's bytes on every 16 ms only")
-      ->excludes(cloud);
+  add_drive(*command, options->capture, cloud);
+  add_imu(*command, options->capture, cloud);
   add_faults(*command, *options, cloud);
   command->add_option("--points", options->points.points, "of the cloud")
       ->needs(cloud)

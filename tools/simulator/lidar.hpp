@@ -62,7 +62,7 @@ public:
   /// Casts the shots of the next data packet.
   void advance();
 
-  /// Of the last packet, in the order of firing; laser id is the index modulo 16.
+  /// Shots of the last packet, in the order of firing; laser id is the index modulo 16.
   std::span<const SimulatedShot> shots() const { return {shots_.data(), shot_count_}; }
   std::int64_t packet_ns() const { return packet_ns_; }
   std::int64_t packet_end_ns() const { return packet_ns_ + packet_duration_ns(settings_.mode); }

@@ -18,7 +18,7 @@ Motion::Motion(std::vector<Pose> knots, std::int64_t start_ns, std::int64_t step
   }
 }
 
-Motion::KnotPosition Motion::knot_position(std::int64_t t_ns) const {
+Motion::Interpolation Motion::interpolation(std::int64_t t_ns) const {
   if (t_ns <= start_ns_ || knots_.size() == 1) return {0, 0};
   const std::int64_t since = t_ns - start_ns_;
   const auto knot = static_cast<std::size_t>(since / step_ns_);
@@ -27,7 +27,7 @@ Motion::KnotPosition Motion::knot_position(std::int64_t t_ns) const {
 }
 
 Pose Motion::base(std::int64_t t_ns) const {
-  const auto [knot, share] = knot_position(t_ns);
+  const auto [knot, share] = interpolation(t_ns);
   const Pose& a = knots_[knot];
   if (share == 0) return a;
   const Pose& b = knots_[knot + 1];
@@ -40,7 +40,7 @@ Pose Motion::base(std::int64_t t_ns) const {
 }
 
 double Motion::distance(std::int64_t t_ns) const {
-  const auto [knot, share] = knot_position(t_ns);
+  const auto [knot, share] = interpolation(t_ns);
   if (share == 0) return distance_[knot];
   return distance_[knot] + share * (distance_[knot + 1] - distance_[knot]);
 }

@@ -25,11 +25,11 @@ public:
   std::int64_t step_ns() const { return step_ns_; }
 
 private:
-  struct KnotPosition {
+  struct Interpolation {
     std::size_t knot;
     double share;  ///< of the next knot
   };
-  KnotPosition knot_position(std::int64_t t_ns) const;
+  Interpolation interpolation(std::int64_t t_ns) const;
 
   std::vector<Pose> knots_;
   std::vector<double> distance_{0};

@@ -24,7 +24,7 @@ GradientNoise::GradientNoise(Random random, double size, double wavelength)
   }
 }
 
-GradientNoise::LatticePosition GradientNoise::lattice_position(double coordinate) const {
+GradientNoise::LatticeCell GradientNoise::lattice_cell(double coordinate) const {
   const double last = static_cast<double>(cells_) - 1e-9;
   const double place = std::clamp((coordinate + half_) / wavelength_, 0.0, last);
   const auto cell = static_cast<std::size_t>(place);
@@ -32,8 +32,8 @@ GradientNoise::LatticePosition GradientNoise::lattice_position(double coordinate
 }
 
 double GradientNoise::operator()(double x, double y) const {
-  const auto [column, du] = lattice_position(x);
-  const auto [row, dv] = lattice_position(y);
+  const auto [column, du] = lattice_cell(x);
+  const auto [row, dv] = lattice_cell(y);
   const Slope* low = &slopes_[row * (cells_ + 1) + column];
   const Slope* high = low + cells_ + 1;
   const double a = low[0].x * du + low[0].y * dv;
@@ -46,12 +46,12 @@ double GradientNoise::operator()(double x, double y) const {
 
 void GradientNoise::add_to_row(double x, double step, double y, double gain,
                                std::span<float> row) const {
-  const auto [line, dv] = lattice_position(y);
+  const auto [line, dv] = lattice_cell(y);
   const double fv = fade(dv);
   const Slope* low = &slopes_[line * (cells_ + 1)];
   const Slope* high = low + cells_ + 1;
   for (std::size_t i = 0; i < row.size(); ++i) {
-    const auto [column, du] = lattice_position(x + static_cast<double>(i) * step);
+    const auto [column, du] = lattice_cell(x + static_cast<double>(i) * step);
     // Between two columns of slopes the noise is a mean of two straight lines.
     const double left_rise = low[column].x + fv * (high[column].x - low[column].x);
     const double left = low[column].y * dv + fv * (high[column].y * (dv - 1) - low[column].y * dv);

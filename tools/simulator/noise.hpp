@@ -19,11 +19,11 @@ public:
   void add_to_row(double x, double step, double y, double gain, std::span<float> row) const;
 
 private:
-  struct LatticePosition {
+  struct LatticeCell {
     std::size_t cell;
     double share;  ///< 0..1 within it
   };
-  LatticePosition lattice_position(double coordinate) const;
+  LatticeCell lattice_cell(double coordinate) const;
   struct Slope {
     double x, y;
   };

@@ -85,6 +85,8 @@ private:
   Eigen::Vector2d to_own_axes(const Eigen::Vector2d& point) const;
   void draw_size(Random& random, std::optional<SizeRange> size);
   void draw_rock(Random& random);
+  void draw_ledge(Random& random);
+  void draw_pillar(Random& random);
   void draw_hole(Random& random);
   /// Distance from the centre in units of the outline's, 0 at the centre and 1 on the outline; for
   /// a long shape distance from its middle line.

@@ -10,8 +10,8 @@ namespace {
 
 /// How much of a long shape's half length one end takes at most.
 constexpr double kLongestEnd = 0.6;
-constexpr double kLongestRock = 1.3;  ///< half of it, metres
-constexpr double kWidestHole = 1.3;   ///< half of it, metres
+constexpr double kLongestRock = 1.3;  ///< half of its length, metres
+constexpr double kWidestHole = 1.3;   ///< half of its width, metres
 constexpr double kUpright = 0.03;     ///< width of a pillar's flank, metres
 
 /// Distance from the middle of a square of half width 1 to its edge; its corners are a little worn.
@@ -102,26 +102,35 @@ void Shape::draw_rock(Random& random) {
       bend_ = random.uniform(-0.05, 0.05);
       break;
     case ShapeKind::ledge:
-      detail_ = random.chance(0.5) ? 1 : 0;
-      // A ramp is at least as wide as makes it climb on.
-      width = detail_ > 0 ? size_ * random.uniform(1.2, 2.0) : random.uniform(0.12, 0.5);
-      length = random.uniform(0.5, 1.5);
-      sharpness_ = random.uniform(0.1, 0.3);
-      bend_ = random.uniform(-0.1, 0.1);
-      end_ = random.uniform(0.04, 0.3);
-      break;
-    case ShapeKind::pillar: {
-      const bool is_thin = random.chance(0.7);
-      is_square_ = !is_thin || random.chance(0.4);
-      width = is_thin ? random.uniform(0.05, 0.2) : std::min(size_, 1.0) * random.uniform(0.3, 0.7);
-      length = is_thin && is_square_ ? random.uniform(0.4, 1.5) : width * random.uniform(1.0, 1.5);
-      irregularity_ = 0.05;
-      sharpness_ = std::min(kUpright / width, 1.0);
-      break;
-    }
+      return draw_ledge(random);
+    case ShapeKind::pillar:
+      return draw_pillar(random);
     default:
       sharpness_ = random.uniform(0.35, 0.6);
   }
+  semi_axes_ = {length, width};
+}
+
+void Shape::draw_ledge(Random& random) {
+  detail_ = random.chance(0.5) ? 1 : 0;
+  // A ramp is at least so wide that it can be climbed.
+  const double width = detail_ > 0 ? size_ * random.uniform(1.2, 2.0) : random.uniform(0.12, 0.5);
+  const double length = random.uniform(0.5, 1.5);
+  sharpness_ = random.uniform(0.1, 0.3);
+  bend_ = random.uniform(-0.1, 0.1);
+  end_ = random.uniform(0.04, 0.3);
+  semi_axes_ = {length, width};
+}
+
+void Shape::draw_pillar(Random& random) {
+  const bool is_thin = random.chance(0.7);
+  is_square_ = !is_thin || random.chance(0.4);
+  const double width =
+      is_thin ? random.uniform(0.05, 0.2) : std::min(size_, 1.0) * random.uniform(0.3, 0.7);
+  const double length =
+      is_thin && is_square_ ? random.uniform(0.4, 1.5) : width * random.uniform(1.0, 1.5);
+  irregularity_ = 0.05;
+  sharpness_ = std::min(kUpright / width, 1.0);
   semi_axes_ = {length, width};
 }
 

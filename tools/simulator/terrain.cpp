@@ -45,6 +45,19 @@ double steep_slope(const std::vector<float>& height, std::size_t vertices, doubl
   return slopes[static_cast<std::size_t>(at)];
 }
 
+TerrainFeature feature_of(const PlacedShape& placed, int id) {
+  TerrainFeature feature;
+  feature.id = id;
+  feature.partner = placed.partner + 1;
+  feature.is_small = placed.is_small;
+  feature.shape = placed.shape.kind();
+  if (is_positive(feature.shape)) feature.kind = ObstacleKind::positive;
+  if (is_negative(feature.shape)) feature.kind = ObstacleKind::negative;
+  feature.footprint = placed.shape.footprint();
+  for (Eigen::Vector2d& corner : feature.footprint) corner += placed.center;
+  return feature;
+}
+
 }  // namespace
 
 Terrain::Terrain(const TerrainSettings& settings, std::uint64_t seed)
@@ -135,17 +148,7 @@ void Terrain::place_features(std::uint64_t seed) {
 void Terrain::stamp(const PlacedShape& placed, Random& random) {
   const Shape& shape = placed.shape;
   const Eigen::Vector2d& center = placed.center;
-  TerrainFeature feature;
-  feature.partner = placed.partner + 1;
-  feature.is_small = placed.is_small;
-  feature.id = static_cast<int>(features_.size()) + 1;
-  feature.shape = shape.kind();
-  if (is_positive(shape.kind())) feature.kind = ObstacleKind::positive;
-  if (is_negative(shape.kind())) feature.kind = ObstacleKind::negative;
-  feature.footprint = shape.footprint();
-  for (Eigen::Vector2d& corner : feature.footprint) corner += center;
-
-  const bool rocky = is_positive(shape.kind());
+  TerrainFeature feature = feature_of(placed, static_cast<int>(features_.size()) + 1);
   const GradientNoise grain(Random(random.next()), 2 * shape.reach(),
                             std::max(0.06, 0.4 * shape.reach()));
   const auto vertex_near = [&](double at) {
@@ -153,6 +156,7 @@ void Terrain::stamp(const PlacedShape& placed, Random& random) {
         std::clamp((at + half_) / settings_.cell, 0.0, static_cast<double>(vertices_ - 1));
     return static_cast<std::size_t>(vertex);
   };
+  const bool rises = is_positive(shape.kind()) || shape.kind() == ShapeKind::mound;
   double ground = 0;
   std::size_t inside = 0;
   for (std::size_t row = vertex_near(center.y() - shape.reach());
@@ -161,29 +165,32 @@ void Terrain::stamp(const PlacedShape& placed, Random& random) {
          column <= vertex_near(center.x() + shape.reach()); ++column) {
       const Eigen::Vector2d at = Eigen::Vector2d(coordinate(column), coordinate(row)) - center;
       const std::size_t index = row * vertices_ + column;
-      double extra = shape.height(at);
-      const double grown = rocky ? 1 + 0.2 * grain(at.x(), at.y()) : 1;
-      extra *= grown;
-      if (rocky && !underside_.empty()) {
-        underside_[index] =
-            std::max(underside_[index], static_cast<float>(grown * shape.underside(at)));
-      }
-      if (shape.inside(at)) {
-        feature_[index] = static_cast<std::uint8_t>(feature.id);
-        ground += static_cast<double>(height_[index]);
-        ++inside;
-        const bool further = is_positive(shape.kind()) || shape.kind() == ShapeKind::mound
-                                 ? extra > feature.height
-                                 : extra < feature.height;
-        if (further) feature.height = extra;
-      }
-      height_[index] += static_cast<float>(extra);
-      if (extra != 0) relief_[index] = static_cast<float>(extra);
+      const auto before = static_cast<double>(height_[index]);
+      const double extra = raise(index, shape, at, grain);
+      if (!shape.inside(at)) continue;
+      feature_[index] = static_cast<std::uint8_t>(feature.id);
+      ground += before;
+      ++inside;
+      feature.height = rises ? std::max(feature.height, extra) : std::min(feature.height, extra);
     }
   }
   ground /= static_cast<double>(std::max<std::size_t>(inside, 1));
   feature.center = {center.x(), center.y(), ground + feature.height / 2};
   features_.push_back(std::move(feature));
+}
+
+double Terrain::raise(std::size_t index, const Shape& shape, const Eigen::Vector2d& at,
+                      const GradientNoise& grain) {
+  const bool is_rock = is_positive(shape.kind());
+  const double grown = is_rock ? 1 + 0.2 * grain(at.x(), at.y()) : 1;
+  const double extra = grown * shape.height(at);
+  if (is_rock && !underside_.empty()) {
+    underside_[index] =
+        std::max(underside_[index], static_cast<float>(grown * shape.underside(at)));
+  }
+  height_[index] += static_cast<float>(extra);
+  if (extra != 0) relief_[index] = static_cast<float>(extra);
+  return extra;
 }
 
 void Terrain::paint(std::uint64_t seed) {
@@ -242,7 +249,7 @@ void Terrain::grow_tufts(std::uint64_t seed) {
   tufts_ = Tufts(std::move(tufts), settings_.size);
 }
 
-Terrain::RasterPosition Terrain::raster_position(double x, double y) const {
+Terrain::RasterCell Terrain::raster_cell(double x, double y) const {
   const double last = static_cast<double>(vertices_ - 1) - 1e-6;
   const double u = std::clamp((x + half_) / settings_.cell, 0.0, last);
   const double v = std::clamp((y + half_) / settings_.cell, 0.0, last);
@@ -252,7 +259,7 @@ Terrain::RasterPosition Terrain::raster_position(double x, double y) const {
 }
 
 double Terrain::bilinear(const std::vector<float>& raster, double x, double y) const {
-  const RasterPosition at = raster_position(x, y);
+  const RasterCell at = raster_cell(x, y);
   const auto corner = [&](std::size_t offset) {
     return static_cast<double>(raster[at.index + offset]);
   };
@@ -284,10 +291,10 @@ Eigen::Vector3d Terrain::normal(double x, double y) const {
 }
 
 double Terrain::reflectivity(double x, double y) const {
-  return reflectivity_[raster_position(x, y).index];
+  return reflectivity_[raster_cell(x, y).index];
 }
 int Terrain::feature_at(double x, double y) const {
-  return feature_[raster_position(x, y).index];
+  return feature_[raster_cell(x, y).index];
 }
 
 namespace {

@@ -16,6 +16,8 @@
 
 namespace scree {
 
+class GradientNoise;
+
 /// One thing on the terrain.
 struct TerrainFeature {
   int id = 0;  ///< from 1
@@ -74,11 +76,11 @@ public:
   }
 
 private:
-  struct RasterPosition {
+  struct RasterCell {
     std::size_t index;  ///< of the vertex at the lower corner
     double u, v;        ///< 0..1 within the cell
   };
-  RasterPosition raster_position(double x, double y) const;
+  RasterCell raster_cell(double x, double y) const;
   double bilinear(const std::vector<float>& raster, double x, double y) const;
   void roll_ground(std::uint64_t seed);
   void roughen_ground(std::uint64_t seed);
@@ -86,6 +88,9 @@ private:
                  std::uint64_t seed, std::uint64_t stream);
   void place_features(std::uint64_t seed);
   void stamp(const PlacedShape& placed, Random& random);
+  /// Raises or lowers one vertex. @param at from the middle of the shape  @return by how much
+  double raise(std::size_t index, const Shape& shape, const Eigen::Vector2d& at,
+               const GradientNoise& grain);
   void paint(std::uint64_t seed);
   void shift_origin();
   void grow_tufts(std::uint64_t seed);

@@ -14,7 +14,7 @@ CloudSettings of_points(std::size_t points) {
   return settings;
 }
 
-/// Of one turn, and of the packet in which it ends.
+/// Shots of one turn, and of the packet in which it ends.
 std::size_t shots_of_a_turn(double rate_hz) {
   return velodyne::kShots +
          static_cast<std::size_t>(velodyne::kLasers * 1e9 / (velodyne::kFiringNs * rate_hz));

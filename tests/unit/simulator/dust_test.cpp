@@ -20,8 +20,8 @@ Motion drive() {
   return {std::move(knots), kStart, kSecond / 10};
 }
 
-/// Of beams along the way, 0.2 to 0.6 m above the ground, the share that meets a grain, at most
-/// 12 m off.
+/// The share of beams along the way, 0.2 to 0.6 m above the ground, that meet a grain at most 12 m
+/// off.
 double met(Dust& dust, std::int64_t t_ns) {
   int met = 0, beams = 0;
   for (double y = -0.6; y <= 0.6; y += 0.05) {

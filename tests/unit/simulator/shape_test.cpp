@@ -139,7 +139,7 @@ TEST(Pillar, IsUprightOnAllSides) {
   }
 }
 
-/// Of the smallest rectangle around a footprint.
+/// The share that a footprint covers of the smallest rectangle around it.
 double share_of_its_box(const Footprint& footprint) {
   double area = 0;
   for (std::size_t a = 0, b = footprint.size() - 1; a < footprint.size(); b = a++) {

@@ -56,8 +56,8 @@ void decode_imu(const DecodeOptions& options) {
   ImuCapture capture(options.capture);
   CsvFile csv(options.out);
   csv.line(
-      "t_ns,packet_counter,sample_time_fine,qw,qx,qy,qz,roll_deg,pitch_deg,yaw_deg,wx,wy,wz,"
-      "ax,ay,az,status");
+      "t_ns,packet_counter,sample_time_fine,qw,qx,qy,qz,roll_deg,pitch_deg,yaw_deg,"
+      "wx,wy,wz,ax,ay,az,status");
   xsens::ImuStream stream(settings.imu, {},
                           [&](std::int64_t t_ns, const xsens::Measurement& measurement) {
                             write_measurement(csv, t_ns, measurement);

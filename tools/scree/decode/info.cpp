@@ -45,7 +45,7 @@ struct Position {
 };
 
 /// How fast the sensor turns, from sweeps that began and ended with a cut.
-struct Turns {
+struct SweepRate {
   std::uint64_t sweeps = 0;
   std::int64_t first_end_ns = 0, last_end_ns = 0, points = 0;
 
@@ -96,7 +96,7 @@ Json refused_json(const LidarCounters& counters) {
   return refused;
 }
 
-Json describe(const LidarCapture& capture, const LidarStream& stream, const Turns& turns,
+Json describe(const LidarCapture& capture, const LidarStream& stream, const SweepRate& sweep_rate,
               const Position& position, LidarModel model) {
   const LidarCounters& counters = stream.counters();
   const double seconds = capture.seconds();
@@ -110,7 +110,7 @@ Json describe(const LidarCapture& capture, const LidarStream& stream, const Turn
   for (std::size_t i = 0; i < velodyne::kPpsNames.size(); ++i) {
     if (position.pps[i] > 0) pps[std::string(velodyne::kPpsNames[i])] = position.pps[i];
   }
-  const double rate = turns.per_second();
+  const double rate = sweep_rate.per_second();
   const FrameCounters& frames = capture.frames();
   return {
       {"begin_ns", capture.first_ns()},
@@ -122,10 +122,10 @@ Json describe(const LidarCapture& capture, const LidarStream& stream, const Turn
        seconds > 0 ? rounded(static_cast<double>(accepted) / seconds, 1) : 0.0},
       {"lost", counters.lost},
       {"refused", refused_json(counters)},
-      {"sweeps", turns.sweeps},
+      {"sweeps", sweep_rate.sweeps},
       {"sweeps_per_second", rounded(rate, 3)},
       {"rpm", rounded(60 * rate, 1)},
-      {"points", turns.points},
+      {"points", sweep_rate.points},
       {"points_dropped", counters.dropped},
       {"clock",
        {{"host_minus_device_s",
@@ -195,14 +195,14 @@ void print_table(const Json& info) {
 void inform(const InfoOptions& options) {
   const Settings settings = capture_settings(options.capture, options.config);
   LidarCapture capture(options.capture, settings);
-  Turns turns;
+  SweepRate sweep_rate;
   Position position;
-  const auto stream =
-      std::make_unique<LidarStream>(settings.lidar, [&](const Sweep& sweep) { turns.see(sweep); });
+  const auto stream = std::make_unique<LidarStream>(
+      settings.lidar, [&](const Sweep& sweep) { sweep_rate.see(sweep); });
   capture.play(*stream, [&](const Datagram& datagram) {
     if (datagram.destination_port == settings.lidar.position_port) position.see(datagram);
   });
-  const Json info = describe(capture, *stream, turns, position, settings.lidar.model);
+  const Json info = describe(capture, *stream, sweep_rate, position, settings.lidar.model);
   if (options.json) {
     fmt::print("{}\n", info.dump(2, ' ', false, Json::error_handler_t::replace));
   } else {

@@ -91,8 +91,8 @@ std::string warning_table(const ScoringResult& result) {
 std::string pose_table(const ScoringResult& result) {
   if (result.pose_errors.empty()) return "";
   std::string text = fmt::format(
-      "\n{:<12}{:>9}{:>9}{:>8}{:>9}{:>8}{:>9}{:>8}{:>9}{:>8}\n{:<12}{:>9}{:>9}{:>8}{:>9}{:>8}"
-      "{:>9}{:>8}{:>9}{:>8}\n",
+      "\n{:<12}{:>9}{:>9}{:>8}{:>9}{:>8}{:>9}{:>8}{:>9}{:>8}\n"
+      "{:<12}{:>9}{:>9}{:>8}{:>9}{:>8}{:>9}{:>8}{:>9}{:>8}\n",
       "pose error", "way", "final", "most", "final", "most", "yaw", "most", "yaw", "most", "", "m",
       "m", "m", "% of way", "%", "deg", "deg", "deg/min", "deg/min");
   for (std::size_t i = 0; i < result.pose_errors.size(); ++i) {

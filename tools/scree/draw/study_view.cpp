@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kHead = 96, kFoot = 64;  // of the page, pixels
 
-/// Of full colour: the hue runs once round from 0 to 1.
+/// A full colour; the hue runs once round from 0 to 1.
 Colour of_hue(double hue, double brightness) {
   const auto part = [&](double offset) {
     const double at = std::fmod(hue + offset, 1.0) * 6;

@@ -11,9 +11,9 @@ namespace scree::cli {
 /// UTC, as 12:34:56.789.
 std::string time_of_day(std::int64_t stamp_ns);
 
-/// Of sensor_health_t::state.
+/// The word for a sensor_health_t::state.
 std::string_view state_name(std::int8_t state);
-/// Of sensor_health_t::clock.
+/// The word for a sensor_health_t::clock.
 std::string_view clock_name(std::int8_t clock);
 
 /// What was counted, and how often.

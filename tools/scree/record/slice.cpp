@@ -60,7 +60,7 @@ void copy_records(PcapReader reader, const Slice& slice, const fs::path& file) {
   require(writer.close());
 }
 
-/// Of a log the packets become datagrams.
+/// Packets of an LCM log become datagrams.
 void copy_lidar(const fs::path& capture, const Settings& settings, const Slice& slice,
                 const fs::path& file) {
   const fs::path source = value_or_fail(lidar_file(capture));
