@@ -76,6 +76,7 @@ protected:
   std::atomic<bool> has_looked_ = true;
   std::atomic<int> processed_ = 0;
   std::atomic<std::int64_t> processed_ns_ = 0;
+  SyncBuffer sensors_;
   std::optional<DetectorWorker> worker_;
   std::thread thread_;
 };
@@ -111,9 +112,8 @@ TEST_F(DetectorWorkerTest, ListsThatThePublisherDoesNotTakeAreDroppedAndCounted)
 }
 
 TEST_F(DetectorWorkerTest, ASweepWaitsForMotionUntilTheLimit) {
-  SyncBuffer sensors;
-  sensors.put(imu_sample(kSampleNs));
-  start(&sensors, 0.08);
+  sensors_.put(imu_sample(kSampleNs));
+  start(&sensors_, 0.08);
   const std::int64_t arrival_ns = push_sweep(kEndNs);
   ASSERT_NE(next_list(), nullptr);
   EXPECT_GE(processed_ns_ - arrival_ns, 80 * kMillisecond);
@@ -121,22 +121,20 @@ TEST_F(DetectorWorkerTest, ASweepWaitsForMotionUntilTheLimit) {
 }
 
 TEST_F(DetectorWorkerTest, ASweepGoesOnWithTheSampleThatCoversIt) {
-  SyncBuffer sensors;
-  sensors.put(imu_sample(kSampleNs));
-  start(&sensors, 60);
+  sensors_.put(imu_sample(kSampleNs));
+  start(&sensors_, 60);
   push_sweep(kEndNs);
   std::this_thread::sleep_for(milliseconds(20));
   EXPECT_EQ(processed_, 0);
-  sensors.put(imu_sample(kEndNs));
+  sensors_.put(imu_sample(kEndNs));
   ASSERT_NE(next_list(), nullptr);
   EXPECT_EQ(worker_->not_covered(), 0U);
 }
 
 TEST_F(DetectorWorkerTest, LoopsWithoutSweepsAndEmptiesTheRings) {
-  SyncBuffer sensors;
-  start(&sensors);
-  sensors.put(imu_sample(kSampleNs));
-  EXPECT_TRUE(until([&] { return sensors.imu_fill().waiting == 0; }));
+  start(&sensors_);
+  sensors_.put(imu_sample(kSampleNs));
+  EXPECT_TRUE(until([&] { return sensors_.imu_fill().waiting == 0; }));
   const std::uint64_t loops = worker_->loops().count();
   const std::int64_t loop_ns = worker_->last_loop_ns();
   EXPECT_TRUE(until([&] { return worker_->loops().count() > loops; }));
@@ -144,9 +142,8 @@ TEST_F(DetectorWorkerTest, LoopsWithoutSweepsAndEmptiesTheRings) {
 }
 
 TEST_F(DetectorWorkerTest, StopsInTheMiddleOfAWait) {
-  SyncBuffer sensors;
-  sensors.put(imu_sample(kSampleNs));
-  start(&sensors, 3600);
+  sensors_.put(imu_sample(kSampleNs));
+  start(&sensors_, 3600);
   push_sweep(kEndNs);
 }
 
