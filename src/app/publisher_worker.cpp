@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "page_faults.hpp"
-#include "scree/core/nanoseconds.hpp"
 #include "scree/clock/clocks.hpp"
+#include "scree/core/nanoseconds.hpp"
 
 namespace scree {
 namespace {

@@ -8,8 +8,8 @@
 #include <optional>
 #include <thread>
 
-#include "scree/publish/subscriber.hpp"
 #include "scree/clock/clocks.hpp"
+#include "scree/publish/subscriber.hpp"
 #include "unit/free_port.hpp"
 
 namespace scree {
