@@ -25,7 +25,7 @@ struct WarningDistances {
 
 double median(std::vector<double> values);  ///< 0 for none
 
-/// What the contract's scoring says of any number of runs.
+/// What the scoring says of any number of runs.
 struct ScoringResult {
   static constexpr double kLeastCoverage = 0.95;
   static constexpr double kRangeBand = 2;  ///< metres
@@ -56,7 +56,7 @@ struct ScoringResult {
   bool counts() const { return runs_not_covered == 0; }
 };
 
-/// Scores lists of detections against truth exactly as the contract says, run by run.
+/// Scores lists of detections against truth, run by run.
 class Scorer {
 public:
   /// @param lists of one run, in time order. @pre truth as read_truth() lets it pass

@@ -36,9 +36,9 @@ LabelledClusters label_clusters(const ClusteredPoints& found,
                                 std::span<const TerrainFeature> features,
                                 std::span<const int> asked, double least_piece = 0);
 
-/// Names the truth of each track within tracking.reach that may be published, by the contract's
-/// rules for a list of this one alone. Of several tracks of an obstacle the surest is it, the
-/// others are none. Left out are those of what is neither known nor nothing.
+/// Names the truth of each track within tracking.reach that may be published, as compare() matches
+/// a list of this one alone. Of several tracks of an obstacle the surest is it, the others are
+/// none. Left out are those of what is neither known nor nothing.
 /// @param base where the robot is, in the tracks' frame
 /// @param truth obstacles, and poses at stamp_ns
 /// @param known ids of the obstacles that were asked for by now, wherever they lie
