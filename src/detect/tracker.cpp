@@ -5,7 +5,8 @@
 #include <cstdlib>
 #include <utility>
 
-#include "scree/detect/pieces.hpp"
+#include "scree/detect/obstacle_box.hpp"
+#include "scree/detect/overlaps.hpp"
 
 namespace scree {
 namespace {
@@ -26,7 +27,7 @@ Tracker::Tracker(const TrackingSettings& settings, std::size_t max_tracks,
       pairs_(16 * max_tracks),
       track_of_(max_tracks),
       published_(max_tracks),
-      pieces_(max_tracks),
+      fragment_merger_(max_tracks),
       shown_(max_tracks),
       shown_before_(max_tracks) {}
 
@@ -94,8 +95,8 @@ void Tracker::update(std::int64_t stamp_ns, const Eigen::Vector3d& robot,
     published_.push_back(track.obstacle);
     published_.back().confidence = track.confidence;
   }
-  pieces_.join(published_);
-  keep_the_surer(published_);
+  fragment_merger_.merge(published_);
+  resolve_overlaps(published_);
   constexpr double kStays = 0.3;  // metres beyond the reach, of what was in the list before
   std::swap(shown_, shown_before_);
   shown_.clear();

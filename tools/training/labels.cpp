@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "scoring/matching.hpp"
-#include "scree/detect/pieces.hpp"
+#include "scree/detect/obstacle_box.hpp"
 
 namespace scree {
 namespace {

@@ -11,8 +11,8 @@
 #include "scree/core/fixed_vector.hpp"
 #include "scree/core/obstacle.hpp"
 #include "scree/core/occupancy.hpp"
+#include "scree/detect/fragment_merger.hpp"
 #include "scree/detect/network.hpp"
-#include "scree/detect/pieces.hpp"
 
 namespace scree {
 
@@ -89,7 +89,7 @@ private:
   FixedVector<Pair> pairs_;
   FixedVector<std::int32_t> track_of_;  // of each found one, -1 for none
   FixedVector<Obstacle> published_;
-  Pieces pieces_;
+  FragmentMerger fragment_merger_;
   FixedVector<std::int64_t> shown_, shown_before_;  // ids in the list
   std::int64_t next_id_ = 1;
   std::uint64_t dropped_ = 0;

@@ -1,0 +1,28 @@
+#include "scree/detect/overlaps.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "scree/detect/obstacle_box.hpp"
+
+namespace scree {
+
+void resolve_overlaps(FixedVector<Obstacle>& obstacles) {
+  const auto is_outdone = [&](const Obstacle& one) {
+    return std::ranges::any_of(obstacles, [&](const Obstacle& other) {
+      if (other.kind == one.kind) return false;
+      const bool is_hole = one.kind == ObstacleKind::negative;
+      const Obstacle &rock = is_hole ? other : one, &hole = is_hole ? one : other;
+      return distance_to_box(rock, hole.center) <= 0 &&
+             (is_hole ? hole.confidence <= rock.confidence : rock.confidence < hole.confidence);
+    });
+  };
+  std::size_t kept = 0;
+  // Swapped, not moved: none may be missing from the list while it is asked.
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    if (!is_outdone(obstacles[i])) std::swap(obstacles[kept++], obstacles[i]);
+  }
+  obstacles.resize(kept);
+}
+
+}  // namespace scree
