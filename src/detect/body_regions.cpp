@@ -20,7 +20,7 @@ BodyRegions::BodyRegions(std::size_t max_points, std::size_t max_cells)
       labels_(max_points),
       sizes_(max_points) {}
 
-void BodyRegions::label(const EdgePoints& bodies, const GroundSurface& surface,
+void BodyRegions::label(const CandidatePoints& bodies, const GroundSurface& surface,
                         const BeamGrid& solidity, const BodyRegionSettings& settings) {
   columns_ = surface.columns();
   labels_.assign(bodies.size(), kNoLabel);
@@ -38,7 +38,7 @@ void BodyRegions::label(const EdgePoints& bodies, const GroundSurface& surface,
   }
 }
 
-void BodyRegions::mark(const EdgePoints& bodies, Side side, const GroundSurface& surface,
+void BodyRegions::mark(const CandidatePoints& bodies, Side side, const GroundSurface& surface,
                        const BeamGrid& solidity) {
   const std::size_t cells = columns_ * surface.rows();
   state_.resize(cells);
@@ -104,7 +104,7 @@ void BodyRegions::join(float saddle) {
   }
 }
 
-void BodyRegions::number(const EdgePoints& bodies, Side side, const GroundSurface& surface) {
+void BodyRegions::number(const CandidatePoints& bodies, Side side, const GroundSurface& surface) {
   number_.assign(state_.size(), kNoLabel);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if ((bodies.height[i] > 0) != (side == Side::above)) continue;

@@ -5,12 +5,12 @@
 namespace scree {
 namespace {
 
-Obstacle obstacle_of(const Cluster& cluster, const Answer& answer, float height) {
+Obstacle obstacle_of(const Cluster& cluster, const Prediction& prediction, float height) {
   const float low = std::min(cluster.lowest, cluster.ground);
   const float high = std::max(cluster.highest, cluster.ground);
   Obstacle obstacle;
-  obstacle.kind = answer.kind();
-  obstacle.confidence = answer.confidence();
+  obstacle.kind = prediction.kind();
+  obstacle.confidence = prediction.confidence();
   obstacle.center = {cluster.box.center_x, cluster.box.center_y, (low + high) / 2};
   obstacle.extent = {cluster.box.length, cluster.box.width, high - low};
   obstacle.yaw = cluster.box.yaw;
@@ -25,13 +25,13 @@ void classify(std::span<const Cluster> clusters, const Network& network, double 
               FixedVector<Obstacle>& obstacles, StageCounts& counts) {
   obstacles.clear();
   for (const Cluster& cluster : clusters) {
-    const Answer answer = network(cluster.features);
-    if (answer.confidence() < static_cast<float>(min_confidence)) continue;
-    const bool is_positive = answer.kind() == ObstacleKind::positive;
+    const Prediction prediction = network(cluster.features);
+    if (prediction.confidence() < static_cast<float>(min_confidence)) continue;
+    const bool is_positive = prediction.kind() == ObstacleKind::positive;
     const float height = cluster.features[is_positive ? max_height : min_height];
     if (is_positive ? height <= 0 : height >= 0) continue;
     ++counts.obstacles;
-    Obstacle obstacle = obstacle_of(cluster, answer, height);
+    Obstacle obstacle = obstacle_of(cluster, prediction, height);
     obstacle.id = static_cast<std::int64_t>(obstacles.size()) + 1;
     if (!obstacles.push_back(obstacle)) ++counts.obstacles_dropped;
   }

@@ -27,7 +27,7 @@ bool has_near(std::size_t cell, std::size_t reach, const GroundSurface& surface,
   return false;
 }
 
-float slope_of(const EdgePoints& edges, std::size_t i) {
+float slope_of(const CandidatePoints& edges, std::size_t i) {
   return std::hypot(edges.slope_x[i], edges.slope_y[i]);
 }
 
@@ -88,7 +88,8 @@ struct BeamsAround {
 
 }  // namespace
 
-void ClusterContext::build(PointView cloud, const EdgePoints& edges, const GroundSurface& surface) {
+void ClusterContext::build(PointView cloud, const CandidatePoints& edges,
+                           const GroundSurface& surface) {
   constexpr float kGroundTolerance = 0.05F;  // metres
   ground_seen_.assign(4 * surface.columns() * surface.rows(), 0);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -126,7 +127,7 @@ bool ClusterContext::is_amid_ground(float x, float y, const GroundSurface& surfa
 }
 
 void ClusterContext::measure(Cluster& cluster, std::span<const std::uint32_t> members,
-                             const EdgePoints& edges, const GroundSurface& surface,
+                             const CandidatePoints& edges, const GroundSurface& surface,
                              const BeamGrid& beams) {
   Features& features = cluster.features;
   features[box_length] = cluster.box.length;
@@ -140,7 +141,8 @@ void ClusterContext::measure(Cluster& cluster, std::span<const std::uint32_t> me
 }
 
 void ClusterContext::measure_points(Features& features, std::span<const std::uint32_t> members,
-                                    const EdgePoints& edges, const GroundSurface& surface) const {
+                                    const CandidatePoints& edges,
+                                    const GroundSurface& surface) const {
   double slopes = 0;
   float through = 0;
   for (const std::uint32_t i : members) {
@@ -154,7 +156,7 @@ void ClusterContext::measure_points(Features& features, std::span<const std::uin
 /// Gathers the cluster's cells with the heights and slopes in them, for all that is measured of
 /// cells, and sets the features that come from these alone.
 void ClusterContext::collect_cells(Features& features, std::span<const std::uint32_t> members,
-                                   const EdgePoints& edges, const GroundSurface& surface) {
+                                   const CandidatePoints& edges, const GroundSurface& surface) {
   constexpr std::size_t kRim = 2;  // cells
   ++number_;
   cells_.clear();

@@ -10,7 +10,7 @@ namespace scree {
 Clusters::Clusters(std::size_t max_points)
     : clusters_(max_points), members_(max_points), place_(max_points) {}
 
-void Clusters::gather(const EdgePoints& edges, std::span<const std::uint32_t> labels,
+void Clusters::gather(const CandidatePoints& edges, std::span<const std::uint32_t> labels,
                       std::span<const std::uint32_t> sizes, std::uint32_t min_size) {
   const auto taken = [&](std::uint32_t label) {
     return label != kNoLabel && sizes[label] >= min_size;
@@ -43,7 +43,7 @@ void Clusters::gather(const EdgePoints& edges, std::span<const std::uint32_t> la
   }
 }
 
-Features measure(const EdgePoints& edges, std::span<const std::uint32_t> members) {
+Features measure(const CandidatePoints& edges, std::span<const std::uint32_t> members) {
   const PointCloud& points = edges.points;
   double x = 0, y = 0, height = 0;
   float lowest = edges.height[members[0]], highest = lowest;

@@ -64,7 +64,7 @@ ClusteredPoints EdgeMethod::find(const PointCloud& points, StageCounts& counts, 
   timer.done(Stage::gradient);
   if (suppression_) suppression_->suppress(edges_, edge_cells_, kept_);
   timer.done(Stage::suppression);
-  EdgePoints& edges = suppression_ ? kept_ : edges_;
+  CandidatePoints& edges = suppression_ ? kept_ : edges_;
   cluster(edges, counts, timer);
   timer.done(Stage::clusters);
   measure_clusters(edges);
@@ -87,7 +87,7 @@ void EdgeMethod::select_edges(StageCounts& counts) {
   }
 }
 
-void EdgeMethod::cluster(const EdgePoints& edges, StageCounts& counts, StageTimer& timer) {
+void EdgeMethod::cluster(const CandidatePoints& edges, StageCounts& counts, StageTimer& timer) {
   counts.kept = edges.size();
   const auto tolerance = static_cast<float>(settings_.cluster_tolerance);
   labels_.resize(edges.size());
@@ -107,14 +107,14 @@ void EdgeMethod::cluster(const EdgePoints& edges, StageCounts& counts, StageTime
   counts.clusters = clusters_.all().size();
 }
 
-void EdgeMethod::grow_supervoxels(const EdgePoints& edges, StageCounts& counts) {
+void EdgeMethod::grow_supervoxels(const CandidatePoints& edges, StageCounts& counts) {
   supervoxels_->segment(edges, supervoxels_of(settings_));
   counts.blocks = supervoxels_->blocks();
   supervoxels_->remove_small(static_cast<std::uint32_t>(settings_.min_block_points));
   counts.blocks_kept = supervoxels_->blocks();
 }
 
-void EdgeMethod::measure_clusters(EdgePoints& edges) {
+void EdgeMethod::measure_clusters(CandidatePoints& edges) {
   for (Cluster& cluster : clusters_.all()) {
     const auto members = clusters_.members(cluster);
     const float middle = (cluster.lowest + cluster.highest) / 2;

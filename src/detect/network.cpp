@@ -169,7 +169,7 @@ Network::Outputs Network::forward(const Inputs& inputs,
   return outputs;
 }
 
-Answer Network::operator()(const Features& features) const noexcept {
+Prediction Network::operator()(const Features& features) const noexcept {
   for (std::size_t i = 0; i < inputs_; ++i) {
     if (std::isnan(features[i])) return {};
   }

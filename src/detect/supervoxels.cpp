@@ -61,7 +61,7 @@ float Supervoxels::squared_metric(const Profile& a, const Profile& b,
          settings.normal_weight * dn * dn;
 }
 
-void Supervoxels::segment(const EdgePoints& edges, const SupervoxelSettings& settings) {
+void Supervoxels::segment(const CandidatePoints& edges, const SupervoxelSettings& settings) {
   fill_voxels(edges, settings.voxel_size);
   find_neighbours();
   place_seeds(settings);
@@ -69,7 +69,7 @@ void Supervoxels::segment(const EdgePoints& edges, const SupervoxelSettings& set
   label_points(edges);
 }
 
-void Supervoxels::fill_voxels(const EdgePoints& edges, float voxel_size) {
+void Supervoxels::fill_voxels(const CandidatePoints& edges, float voxel_size) {
   const PointCloud& points = edges.points;
   point_cells_.build(points, voxel_size, std::numeric_limits<float>::infinity());
   voxels_.clear();
@@ -185,7 +185,7 @@ void Supervoxels::average_blocks() {
   }
 }
 
-void Supervoxels::label_points(const EdgePoints& edges) {
+void Supervoxels::label_points(const CandidatePoints& edges) {
   labels_.resize(edges.size());
   block_points_.assign(block_means_.size(), 0);
   centers_.resize(block_means_.size());

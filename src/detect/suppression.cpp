@@ -14,7 +14,8 @@ struct Mean {
 
 }  // namespace
 
-void Suppression::suppress(const EdgePoints& edges, PlaneCells& cells, EdgePoints& kept) const {
+void Suppression::suppress(const CandidatePoints& edges, PlaneCells& cells,
+                           CandidatePoints& kept) const {
   cells.build(edges.points, reach());
   kept.clear();
   const PointCloud& points = cells.points();

@@ -43,9 +43,9 @@ void Scores::count(Label truth, Label found) {
   if (truth != Label::none) ++score_of(truth).false_negatives;
 }
 
-Label decide(const Answer& answer, double min_confidence) {
-  if (static_cast<double>(answer.confidence()) < min_confidence) return Label::none;
-  return answer.kind() == ObstacleKind::positive ? Label::positive : Label::negative;
+Label decide(const Prediction& prediction, double min_confidence) {
+  if (static_cast<double>(prediction.confidence()) < min_confidence) return Label::none;
+  return prediction.kind() == ObstacleKind::positive ? Label::positive : Label::negative;
 }
 
 Scores evaluate(const Network& network, std::span<const Sample> samples, double min_confidence) {

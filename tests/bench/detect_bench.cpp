@@ -94,15 +94,15 @@ void suppression(benchmark::State& state) {
   const Suppression stage{static_cast<float>(edge_settings().suppression_distance),
                           static_cast<float>(edge_settings().suppression_radius)};
   PlaneCells cells(max_edges());
-  EdgePoints kept(max_edges());
-  const EdgePoints& edges = ran().candidates();
+  CandidatePoints kept(max_edges());
+  const CandidatePoints& edges = ran().candidates();
   for (auto _ : state) stage.suppress(edges, cells, kept);
 }
 BENCHMARK(suppression)->Unit(benchmark::kMillisecond);
 
 void supervoxels(benchmark::State& state) {
   Supervoxels stage(max_edges());
-  const EdgePoints& kept = ran().result().points;
+  const CandidatePoints& kept = ran().result().points;
   for (auto _ : state) {
     stage.segment(kept, supervoxels_of(edge_settings()));
   }
@@ -112,7 +112,7 @@ BENCHMARK(supervoxels)->Unit(benchmark::kMillisecond);
 template <class Stage>
 void euclidean_clusters(benchmark::State& state) {
   Stage stage(max_edges());
-  const EdgePoints& kept = ran().result().points;
+  const CandidatePoints& kept = ran().result().points;
   for (auto _ : state) stage.cluster(kept.points, 0.15F);
 }
 BENCHMARK(euclidean_clusters<EuclideanClusters>)->Unit(benchmark::kMillisecond);

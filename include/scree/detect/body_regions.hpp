@@ -5,7 +5,7 @@
 #include <span>
 
 #include "scree/detect/beam_grid.hpp"
-#include "scree/detect/edge_points.hpp"
+#include "scree/detect/candidate_points.hpp"
 #include "scree/detect/ground_surface.hpp"
 #include "scree/detect/key_sort.hpp"
 
@@ -29,7 +29,7 @@ public:
   /// @param bodies above (height > 0) or below the surface; all other points of the cloud that
   /// `surface` was built from count as seen ground
   /// @param solidity on the same raster
-  void label(const EdgePoints& bodies, const GroundSurface& surface, const BeamGrid& solidity,
+  void label(const CandidatePoints& bodies, const GroundSurface& surface, const BeamGrid& solidity,
              const BodyRegionSettings& settings);
 
   /// Region of each point, numbered from 0.
@@ -41,11 +41,11 @@ private:
   enum State : std::uint8_t { unseen, clear, loose, firm };
   enum class Side : std::uint8_t { above, below };
 
-  void mark(const EdgePoints& bodies, Side side, const GroundSurface& surface,
+  void mark(const CandidatePoints& bodies, Side side, const GroundSurface& surface,
             const BeamGrid& solidity);
   void grow(bool diagonally, float share);
   void join(float saddle);
-  void number(const EdgePoints& bodies, Side side, const GroundSurface& surface);
+  void number(const CandidatePoints& bodies, Side side, const GroundSurface& surface);
 
   std::size_t columns_ = 0;
   FixedVector<State> state_, grown_;

@@ -25,12 +25,12 @@ public:
 
   /// Notes where the ground itself was seen, and in which cells something stands above it or lies
   /// below it.
-  void build(PointView cloud, const EdgePoints& edges, const GroundSurface& surface);
+  void build(PointView cloud, const CandidatePoints& edges, const GroundSurface& surface);
 
   /// Sets the features from box_length on.
   /// @param members of the cluster among the points given to build()
-  void measure(Cluster& cluster, std::span<const std::uint32_t> members, const EdgePoints& edges,
-               const GroundSurface& surface, const BeamGrid& beams);
+  void measure(Cluster& cluster, std::span<const std::uint32_t> members,
+               const CandidatePoints& edges, const GroundSurface& surface, const BeamGrid& beams);
 
 private:
   enum Side : std::uint8_t { above = 1, below = 2 };
@@ -38,9 +38,9 @@ private:
   std::size_t quarter_at(float x, float y, const GroundSurface& surface) const;
   bool is_amid_ground(float x, float y, const GroundSurface& surface) const;
   void measure_points(Features& features, std::span<const std::uint32_t> members,
-                      const EdgePoints& edges, const GroundSurface& surface) const;
+                      const CandidatePoints& edges, const GroundSurface& surface) const;
   void collect_cells(Features& features, std::span<const std::uint32_t> members,
-                     const EdgePoints& edges, const GroundSurface& surface);
+                     const CandidatePoints& edges, const GroundSurface& surface);
   static void measure_around(Features& features, const OrientedBox& box,
                              const GroundSurface& surface, const BeamGrid& beams);
   void measure_solidity(Features& features, const BeamGrid& beams);

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <span>
 
-#include "scree/detect/edge_points.hpp"
+#include "scree/detect/candidate_points.hpp"
 #include "scree/detect/features.hpp"
 #include "scree/detect/oriented_box.hpp"
 
@@ -27,7 +27,7 @@ public:
   /// Gathers the points of each label that is borne by at least `min_size` units, and their boxes.
   /// @param labels of each edge point, below `sizes.size()`, or kNoLabel
   /// @param sizes units (super-voxels or points) of each label
-  void gather(const EdgePoints& edges, std::span<const std::uint32_t> labels,
+  void gather(const CandidatePoints& edges, std::span<const std::uint32_t> labels,
               std::span<const std::uint32_t> sizes, std::uint32_t min_size);
 
   std::span<Cluster> all() { return clusters_; }
@@ -46,7 +46,7 @@ private:
 /// What a method hands on: clusters, and the points that they are made of. Valid until the method's
 /// next call.
 struct ClusteredPoints {
-  const EdgePoints& points;
+  const CandidatePoints& points;
   const Clusters& clusters;
 };
 
@@ -54,6 +54,6 @@ struct ClusteredPoints {
 /// point is (slope_x, slope_y, -1), into the ground: its horizontal part points uphill, so the
 /// angle to m, the horizontal vector to the axis through the centre of gravity, is acute on a bump
 /// and obtuse in a bowl. A right angle counts for neither.
-Features measure(const EdgePoints& edges, std::span<const std::uint32_t> members);
+Features measure(const CandidatePoints& edges, std::span<const std::uint32_t> members);
 
 }  // namespace scree

@@ -5,8 +5,8 @@
 
 #include "scree/config/settings.hpp"
 #include "scree/core/stage_times.hpp"
+#include "scree/detect/candidate_points.hpp"
 #include "scree/detect/clusters.hpp"
-#include "scree/detect/edge_points.hpp"
 #include "scree/detect/ground_height.hpp"
 #include "scree/detect/kd_tree_clusters.hpp"
 #include "scree/detect/sloped_cloud.hpp"
@@ -33,16 +33,16 @@ public:
 
   // What each stage of the last call gave.
   const SlopedCloud& sloped() const { return sloped_; }
-  const EdgePoints& candidates() const { return edges_; }
+  const CandidatePoints& candidates() const { return edges_; }
   ClusteredPoints result() const { return {suppression_ ? kept_ : edges_, clusters_}; }
   /// Null without super-voxels.
   const Supervoxels* supervoxels() const { return supervoxels_ ? &*supervoxels_ : nullptr; }
 
 private:
   void select_edges(StageCounts& counts);
-  void cluster(const EdgePoints& edges, StageCounts& counts, StageTimer& timer);
-  void grow_supervoxels(const EdgePoints& edges, StageCounts& counts);
-  void measure_clusters(EdgePoints& edges);
+  void cluster(const CandidatePoints& edges, StageCounts& counts, StageTimer& timer);
+  void grow_supervoxels(const CandidatePoints& edges, StageCounts& counts);
+  void measure_clusters(CandidatePoints& edges);
 
   EdgeSettings settings_;
   std::size_t max_points_, max_edges_;
@@ -51,7 +51,7 @@ private:
 
   SlopedCloud sloped_;
   FixedVector<std::uint8_t> is_edge_;  // for each sorted point
-  EdgePoints edges_, kept_;
+  CandidatePoints edges_, kept_;
   PlaneCells edge_cells_;
   std::optional<Supervoxels> supervoxels_;
   KdTreeClusters euclidean_;

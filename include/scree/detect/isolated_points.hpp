@@ -1,6 +1,6 @@
 #pragma once
 
-#include "scree/detect/edge_points.hpp"
+#include "scree/detect/candidate_points.hpp"
 #include "scree/detect/euclidean_clusters.hpp"
 
 namespace scree {
@@ -8,8 +8,8 @@ namespace scree {
 /// Leaves out points without another one within `reach` metres: dust and wrong matches would
 /// stretch the body below them.
 /// @param clusters is working memory
-inline void remove_isolated_points(const EdgePoints& points, float reach,
-                                   EuclideanClusters& clusters, EdgePoints& kept) {
+inline void remove_isolated_points(const CandidatePoints& points, float reach,
+                                   EuclideanClusters& clusters, CandidatePoints& kept) {
   clusters.cluster(points.points, reach);
   kept.clear();
   for (std::size_t i = 0; i < points.size(); ++i) {

@@ -17,7 +17,7 @@ namespace scree {
 
 /// What the network says of one cluster: how surely it is an obstacle of each kind, 0..1 each.
 /// Both low: no obstacle.
-struct Answer {
+struct Prediction {
   float positive = 0;
   float negative = 0;
 
@@ -37,7 +37,7 @@ enum class InputForm : std::uint8_t {
 
 /// The paper's network (section 3.1, fig. 9): features in, the paper's five or more, one hidden
 /// layer of sigmoids, two sigmoids out. Each input is (form(feature) - mean) / scale, cut to +-100.
-/// All in double, so that a file saved and loaded gives the same answers bit for bit.
+/// All in double, so that a file saved and loaded gives the same outputs bit for bit.
 class Network {
 public:
   static constexpr std::size_t kOutputs = 2;  ///< positive, negative
@@ -71,13 +71,13 @@ public:
   std::string to_text(std::string_view provenance) const;
 
   /// Allocates nothing. Infinite and huge features are cut as said above; NaN gives {0, 0}.
-  Answer operator()(const Features& features) const noexcept;
+  Prediction operator()(const Features& features) const noexcept;
 
   std::size_t hidden() const noexcept { return hidden_; }
   std::size_t inputs() const noexcept { return inputs_; }
   /// Features as the first layer sees them.
   Inputs normalised(const Features& features) const noexcept;
-  /// Both layers; `hidden_values` has room for hidden() answers of the hidden layer.
+  /// Both layers; `hidden_values` has room for hidden() outputs of the hidden layer.
   Outputs forward(const Inputs& inputs, std::span<double> hidden_values) const noexcept;
 
   /// Row by row: for each hidden unit its inputs() weights and its bias, then for each output its

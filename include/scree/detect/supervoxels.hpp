@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <span>
 
-#include "scree/detect/edge_points.hpp"
+#include "scree/detect/candidate_points.hpp"
 #include "scree/detect/space_cells.hpp"
 
 namespace scree {
@@ -26,7 +26,7 @@ public:
 
   /// @pre edges.size() <= max_points, points finite and within
   /// reach_of_cells(voxel_size, max_points, 3)
-  void segment(const EdgePoints& edges, const SupervoxelSettings& settings);
+  void segment(const CandidatePoints& edges, const SupervoxelSettings& settings);
 
   /// Block of each edge point, or kNoLabel: unreached by every seed, or in a removed block.
   std::span<const std::uint32_t> labels() const { return labels_; }
@@ -49,12 +49,12 @@ private:
     void average(std::uint32_t count);
   };
 
-  void fill_voxels(const EdgePoints& edges, float voxel_size);
+  void fill_voxels(const CandidatePoints& edges, float voxel_size);
   void find_neighbours();
   void place_seeds(const SupervoxelSettings& settings);
   void grow(const SupervoxelSettings& settings);
   void average_blocks();
-  void label_points(const EdgePoints& edges);
+  void label_points(const CandidatePoints& edges);
   static float squared_metric(const Profile& a, const Profile& b,
                               const SupervoxelSettings& settings);
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "scree/detect/edge_points.hpp"
+#include "scree/detect/candidate_points.hpp"
 #include "scree/detect/plane_cells.hpp"
 
 namespace scree {
@@ -17,7 +17,7 @@ struct Suppression {
 
   /// Writes what stays of `edges` to `kept`; `cells` is working memory.
   /// @pre kept and cells hold as many points as `edges`
-  void suppress(const EdgePoints& edges, PlaneCells& cells, EdgePoints& kept) const;
+  void suppress(const CandidatePoints& edges, PlaneCells& cells, CandidatePoints& kept) const;
 };
 
 }  // namespace scree

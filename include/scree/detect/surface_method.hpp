@@ -8,9 +8,9 @@
 #include "scree/core/stage_times.hpp"
 #include "scree/detect/beam_grid.hpp"
 #include "scree/detect/body_regions.hpp"
+#include "scree/detect/candidate_points.hpp"
 #include "scree/detect/cluster_context.hpp"
 #include "scree/detect/clusters.hpp"
-#include "scree/detect/edge_points.hpp"
 #include "scree/detect/euclidean_clusters.hpp"
 #include "scree/detect/ground_surface.hpp"
 #include "scree/detect/sloped_cloud.hpp"
@@ -38,7 +38,7 @@ public:
 
   // What each stage of the last call gave.
   const SlopedCloud& sloped() const { return sloped_; }
-  const EdgePoints& candidates() const { return candidates_; }
+  const CandidatePoints& candidates() const { return candidates_; }
   ClusteredPoints result() const { return {kept_, clusters_}; }
 
 private:
@@ -59,7 +59,7 @@ private:
   BeamGrid beam_grid_;
   FixedVector<float> height_;                // above the surface, of each sorted point
   FixedVector<std::uint8_t> is_off_ground_;  // for each of them
-  EdgePoints candidates_, kept_;
+  CandidatePoints candidates_, kept_;
   EuclideanClusters euclidean_;
   PointCloud split_;  // for Euclidean clustering
   std::optional<BodyRegions> regions_;

@@ -31,8 +31,8 @@ struct Scores {
   void count(Label truth, Label found);
 };
 
-/// What the detector reports for this answer.
-Label decide(const Answer& answer, double min_confidence);
+/// What the detector reports for this prediction.
+Label decide(const Prediction& prediction, double min_confidence);
 Scores evaluate(const Network& network, std::span<const Sample> samples, double min_confidence);
 
 }  // namespace scree

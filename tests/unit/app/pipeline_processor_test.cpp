@@ -12,9 +12,8 @@ namespace {
 Settings small_settings() {
   Settings settings;
   settings.lidar = test::usual_lidar();
-  settings.map.max_points = 1 << 13;
-  settings.map.max_voxels = settings.detect_map.max_points = 1 << 16;
-  settings.detect_sweep.max_points = settings.detect_sweep.max_edge_points = 2;
+  settings.memory.sweep_points = 1 << 13;
+  settings.memory.map_voxels = 1 << 16;
   return settings;
 }
 
@@ -28,16 +27,18 @@ protected:
   }
 
   Settings settings_ = small_settings();
-  Pipeline pipeline_{settings_, Detector(settings_.detect_map, Network()),
-                     Detector(settings_.detect_sweep, Network())};
+  Pipeline pipeline_{settings_, Networks()};
   PipelineProcessor processor_{pipeline_, settings_.track};
   DetectionReport report_;
 };
 
 TEST_F(PipelineProcessorTest, SumsUpWhatWasDroppedSweepBySweep) {
-  EXPECT_NE(process(row_of_points(5)), nullptr);
+  settings_.memory.sweep_points = 2;
+  Pipeline small(settings_, Networks());
+  PipelineProcessor processor(small, settings_.track);
+  EXPECT_NE(processor(row_of_points(5), report_), nullptr);
   EXPECT_EQ(report_.drops.points, 3U);
-  process(row_of_points(6));
+  processor(row_of_points(6), report_);
   EXPECT_EQ(report_.drops.points, 7U);
 }
 

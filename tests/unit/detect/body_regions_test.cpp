@@ -56,7 +56,7 @@ protected:
 
   PointCloud cloud_{1 << 16};
   std::vector<BeamCount> beams_;
-  EdgePoints bodies_{1 << 16};
+  CandidatePoints bodies_{1 << 16};
   GroundSurface surface_{1 << 16, 1 << 16};
   BeamGrid solidity_{1 << 16};
   BodyRegions regions_{1 << 16, 1 << 16};

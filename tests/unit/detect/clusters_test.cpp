@@ -13,8 +13,8 @@ namespace scree {
 namespace {
 
 /// Points on the flank of a round bump (height above zero) or bowl, with the slope they lie on.
-EdgePoints flank(float height, float radius) {
-  EdgePoints edges(360);
+CandidatePoints flank(float height, float radius) {
+  CandidatePoints edges(360);
   PointCloud one(1);
   for (int degree = 0; degree < 360; ++degree) {
     const float angle = static_cast<float>(degree) * std::numbers::pi_v<float> / 180;
@@ -28,14 +28,14 @@ EdgePoints flank(float height, float radius) {
   return edges;
 }
 
-std::vector<std::uint32_t> all_of(const EdgePoints& edges) {
+std::vector<std::uint32_t> all_of(const CandidatePoints& edges) {
   std::vector<std::uint32_t> indices(edges.size());
   std::iota(indices.begin(), indices.end(), 0);
   return indices;
 }
 
 TEST(Features, AnglesAreAcuteOnABumpAndObtuseInABowl) {
-  const EdgePoints bump = flank(0.5F, 1), bowl = flank(-0.5F, 1);
+  const CandidatePoints bump = flank(0.5F, 1), bowl = flank(-0.5F, 1);
   const Features of_bump = measure(bump, all_of(bump));
   EXPECT_EQ(of_bump[acute_count], 360);
   EXPECT_EQ(of_bump[obtuse_count], 0);
@@ -45,7 +45,7 @@ TEST(Features, AnglesAreAcuteOnABumpAndObtuseInABowl) {
 }
 
 TEST(Features, HeightsAreAboveTheGroundNotTheOrigin) {
-  EdgePoints bump = flank(0.5F, 1);
+  CandidatePoints bump = flank(0.5F, 1);
   for (float& z : bump.points.z) z += 10;
   const Features features = measure(bump, all_of(bump));
   EXPECT_NEAR(features[max_height], 0.35, 1e-4);
@@ -89,7 +89,7 @@ TEST(OrientedBox, OfOnePointIsThePoint) {
 }
 
 TEST(Clusters, GathersLabelsOfEnoughUnits) {
-  const EdgePoints edges = flank(0.5F, 1);
+  const CandidatePoints edges = flank(0.5F, 1);
   std::vector<std::uint32_t> labels(edges.size());
   for (std::uint32_t i = 0; i < labels.size(); ++i) labels[i] = i % 10 == 0 ? kNoLabel : i % 3;
   const std::vector<std::uint32_t> sizes{5, 1, 3};

@@ -209,7 +209,7 @@ TEST(Suppression, KeepsWhatThePaperKeeps) {
   PlaneCells cells(cloud.size());
   cells.build(cloud, gradient.reach());
   const Slopes slopes = slopes_of(cells, gradient);
-  EdgePoints edges(cloud.size()), kept(cloud.size());
+  CandidatePoints edges(cloud.size()), kept(cloud.size());
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (std::hypot(slopes.x[i], slopes.y[i]) >= 0.3F) {
       edges.push_back(cells.points(), i, slopes.x[i], slopes.y[i]);

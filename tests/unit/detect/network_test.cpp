@@ -60,9 +60,9 @@ TEST(Network, ForwardPassAgreesWithTheFormulasWrittenOut) {
                d = (std::log(31.0) - 4) / 1.5, e = (std::log(8.0) - 5) / 2.5;
   const double h1 = sigmoid(0.5 * a - b + 2 * c + 0.25 * d - 0.125 * e + 0.1);
   const double h2 = sigmoid(-0.5 * a + b + 1.5 * c - 0.75 * d + 0.6 * e - 0.2);
-  const Answer answer = (*network)({0.4F, 0.9F, -0.1F, 30, 7});
-  EXPECT_NEAR(answer.positive, sigmoid(1.5 * h1 - 2 * h2 + 0.3), 1e-6);
-  EXPECT_NEAR(answer.negative, sigmoid(-h1 + 2.5 * h2 - 0.4), 1e-6);
+  const Prediction prediction = (*network)({0.4F, 0.9F, -0.1F, 30, 7});
+  EXPECT_NEAR(prediction.positive, sigmoid(1.5 * h1 - 2 * h2 + 0.3), 1e-6);
+  EXPECT_NEAR(prediction.negative, sigmoid(-h1 + 2.5 * h2 - 0.4), 1e-6);
 }
 
 TEST(Network, SaveAndLoadGiveTheSameNetworkExactly) {
@@ -136,20 +136,20 @@ TEST(Network, AnswersStayBetweenZeroAndOneWhateverTheFeatures) {
     for (const Features& features :
          {Features{kHuge, -kHuge, kHuge, kHuge, kHuge}, Features{kInf, -kInf, kInf, kInf, kInf},
           Features{0, 0, 0, -5, -kInf}, Features{}}) {
-      const Answer answer = network(features);
-      EXPECT_TRUE(answer.positive >= 0 && answer.positive <= 1) << answer.positive;
-      EXPECT_TRUE(answer.negative >= 0 && answer.negative <= 1) << answer.negative;
+      const Prediction prediction = network(features);
+      EXPECT_TRUE(prediction.positive >= 0 && prediction.positive <= 1) << prediction.positive;
+      EXPECT_TRUE(prediction.negative >= 0 && prediction.negative <= 1) << prediction.negative;
     }
   }
-  const Answer answer = network({0, std::nanf(""), 0, 1, 1});
-  EXPECT_EQ(answer.positive, 0.0F);
-  EXPECT_EQ(answer.negative, 0.0F);
+  const Prediction prediction = network({0, std::nanf(""), 0, 1, 1});
+  EXPECT_EQ(prediction.positive, 0.0F);
+  EXPECT_EQ(prediction.negative, 0.0F);
 }
 
 TEST(Network, AnswerGivesKindAndConfidence) {
-  EXPECT_EQ((Answer{0.9F, 0.2F}).kind(), ObstacleKind::positive);
-  EXPECT_EQ((Answer{0.1F, 0.2F}).kind(), ObstacleKind::negative);
-  EXPECT_EQ((Answer{0.1F, 0.2F}).confidence(), 0.2F);
+  EXPECT_EQ((Prediction{0.9F, 0.2F}).kind(), ObstacleKind::positive);
+  EXPECT_EQ((Prediction{0.1F, 0.2F}).kind(), ObstacleKind::negative);
+  EXPECT_EQ((Prediction{0.1F, 0.2F}).confidence(), 0.2F);
 }
 
 }  // namespace

@@ -143,13 +143,13 @@ TEST(PclReference, EuclideanClustersAreTheSameSets) {
 }
 
 /// Edge points of a cloud: all points that have a slope, so that PCL gets the same normals.
-EdgePoints with_slopes(const PointCloud& cloud) {
+CandidatePoints with_slopes(const PointCloud& cloud) {
   const ElevationGradient gradient{0.1F, 0.15F, 0.3F, 1};
   PlaneCells cells(cloud.size());
   cells.build(cloud, gradient.reach());
   std::vector<float> slope_x(cloud.size()), slope_y(cloud.size());
   gradient.compute(cells, {}, slope_x, slope_y);
-  EdgePoints edges(cloud.size());
+  CandidatePoints edges(cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (!std::isnan(slope_x[i])) edges.push_back(cells.points(), i, slope_x[i], slope_y[i]);
   }
@@ -160,7 +160,7 @@ struct BlockStatistics {
   double count = 0, mean_size = 0, median_size = 0, assigned = 0, mean_radius = 0;
 };
 
-BlockStatistics statistics(const EdgePoints& edges, std::span<const std::uint32_t> labels) {
+BlockStatistics statistics(const CandidatePoints& edges, std::span<const std::uint32_t> labels) {
   std::map<std::uint32_t, std::vector<std::size_t>> blocks;
   for (std::size_t i = 0; i < labels.size(); ++i) {
     if (labels[i] != kNoLabel) blocks[labels[i]].push_back(i);
@@ -196,7 +196,7 @@ BlockStatistics statistics(const EdgePoints& edges, std::span<const std::uint32_
 TEST(PclReference, SupervoxelsAgreeStatistically) {
   const float voxel = 0.08F, seed = 0.3F;
   for (const PointCloud& whole : clouds()) {
-    const EdgePoints edges = with_slopes(thinned(whole, 0.06F));
+    const CandidatePoints edges = with_slopes(thinned(whole, 0.06F));
     ASSERT_GT(edges.size(), 1000U);
     auto points = std::make_shared<pcl::PointCloud<pcl::PointXYZRGBA>>();
     auto normals = std::make_shared<pcl::PointCloud<pcl::Normal>>();

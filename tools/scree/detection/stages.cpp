@@ -22,7 +22,7 @@ PointCloud with_value(PointView points, Value&& value) {
   return cloud;
 }
 
-PointCloud with_slope(const EdgePoints& edges) {
+PointCloud with_slope(const CandidatePoints& edges) {
   return with_value(edges.points,
                     [&](std::size_t i) { return std::hypot(edges.slope_x[i], edges.slope_y[i]); });
 }

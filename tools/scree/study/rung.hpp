@@ -41,7 +41,7 @@ private:
   SlopedCloud sloped_;
   GroundSurface surface_;
   BeamGrid beam_grid_;
-  EdgePoints candidates_, kept_, split_;
+  CandidatePoints candidates_, kept_, split_;
   Supervoxels supervoxels_;
   EuclideanClusters euclidean_;
   FixedVector<std::uint32_t> labels_;

@@ -4,14 +4,15 @@
 
 namespace scree {
 
-/// Points on steep ground, with the slope of the elevation there (metres per metre). The vector
+/// Points of which obstacles may be made, the edge points of the paper or those off the ground's
+/// surface, with the slope of the elevation there (metres per metre). The vector
 /// (slope_x, slope_y, -1) is the surface normal that points into the ground. Heights are above the
 /// ground, in metres, once it is known.
-struct EdgePoints {
+struct CandidatePoints {
   PointCloud points;
   FixedVector<float> slope_x, slope_y, height;
 
-  explicit EdgePoints(std::size_t capacity)
+  explicit CandidatePoints(std::size_t capacity)
       : points(capacity), slope_x(capacity), slope_y(capacity), height(capacity) {}
 
   std::size_t size() const { return points.size(); }
