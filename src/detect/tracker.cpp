@@ -171,13 +171,13 @@ void Tracker::judge() {
       surer = std::min(surer, apart.head<2>().norm());
     }
     track.features[track_surer] = static_cast<float>(surer);
-    const Answer answer =
+    const Prediction prediction =
         judge_ ? (*judge_)(track.features)
-               : Answer{track.features[track_positive], track.features[track_negative]};
+               : Prediction{track.features[track_positive], track.features[track_negative]};
     const float most_fall = track.is_seen_empty ? kMostFallEmpty : kMostFall;
     const float least = track.is_published ? track.confidence - most_fall : 0;
-    track.confidence = std::max(answer.confidence(), least);
-    track.obstacle.kind = answer.kind();
+    track.confidence = std::max(prediction.confidence(), least);
+    track.obstacle.kind = prediction.kind();
   }
 }
 

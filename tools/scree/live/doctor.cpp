@@ -113,7 +113,7 @@ private:
   }
 
   void check_multicast() {
-    const auto routed = check_multicast(settings_.lcm.url);
+    const auto routed = scree::check_multicast(settings_.lcm.url);
     add(routed ? ok("LCM", settings_.lcm.url + " has a route")
                : wrong("LCM", routed.error().message));
   }
