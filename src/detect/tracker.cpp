@@ -20,9 +20,9 @@ bool may_be_same(const Obstacle& a, const Obstacle& b) {
 }  // namespace
 
 Tracker::Tracker(const TrackingSettings& settings, std::size_t max_tracks,
-                 std::optional<Network> judge)
+                 std::optional<Network> network)
     : settings_(settings),
-      judge_(std::move(judge)),
+      network_(std::move(network)),
       tracks_(max_tracks),
       pairs_(16 * max_tracks),
       track_of_(max_tracks),
@@ -39,44 +39,67 @@ void Tracker::update(std::int64_t stamp_ns, const Eigen::Vector3d& robot,
     dropped_ += found.size() - track_of_.capacity();
     found = found.first(track_of_.capacity());
   }
-  match(found);
-  const auto share = static_cast<float>(settings_.smoothing);
+  associate(found);
+  update_matched(stamp_ns, found);
+  update_unmatched(occupancy_at);
+  remove_lost(stamp_ns);
+  start_tracks(stamp_ns, found);
+  classify();
+  choose_published();
+  list_near(robot, obstacles);
+}
+
+void Tracker::update_matched(std::int64_t stamp_ns, std::span<const Obstacle> found) {
   for (std::size_t i = 0; i < found.size(); ++i) {
-    if (track_of_[i] >= 0) {
-      learn(tracks_[static_cast<std::size_t>(track_of_[i])], &found[i], share);
-      tracks_[static_cast<std::size_t>(track_of_[i])].found_ns = stamp_ns;
-    }
+    if (track_of_[i] < 0) continue;
+    add_found(stamp_ns, found[i], tracks_[static_cast<std::size_t>(track_of_[i])]);
   }
+}
+
+void Tracker::update_unmatched(
+    const std::function<Occupancy(const Eigen::Vector3d&)>& occupancy_at) {
+  const auto share = static_cast<float>(settings_.smoothing);
+  for (Track& track : tracks_) {
+    if (track.is_matched) continue;
+    const Occupancy seen = occupancy_at(track.obstacle.center);
+    // The middle of a hole is empty as long as it is there.
+    track.is_seen_empty = seen == Occupancy::free && track.obstacle.height > 0;
+    const float weight = track.is_seen_empty          ? std::min(2 * share, 1.0F)
+                         : seen == Occupancy::unknown ? 0
+                                                      : share;
+    smooth(track.features, 0, 0, weight);
+  }
+}
+
+/// Removes the tracks that were not found for long, and those without any confidence.
+void Tracker::remove_lost(std::int64_t stamp_ns) {
+  constexpr float kLeast = 0.02F;
   const std::int64_t remembered_ns = static_cast<std::int64_t>(settings_.remember * 1e9);
   std::size_t kept = 0;
-  for (Track& track : tracks_) {
-    if (!track.is_matched) {
-      const Occupancy seen = occupancy_at(track.obstacle.center);
-      // The middle of a hole is empty as long as it is there.
-      track.is_seen_empty = seen == Occupancy::free && track.obstacle.height > 0;
-      learn(track, nullptr,
-            track.is_seen_empty          ? std::min(2 * share, 1.0F)
-            : seen == Occupancy::unknown ? 0
-                                         : share);
-      // From the future, too, when the clock was set back.
-      if (std::abs(stamp_ns - track.found_ns) >= remembered_ns) continue;
-    }
-    if (track.smoothed() < 0.02F) continue;
+  for (const Track& track : tracks_) {
+    // Found in the future, too, when the clock was set back.
+    const bool is_old = std::abs(stamp_ns - track.found_ns) >= remembered_ns;
+    if (!track.is_matched && is_old) continue;
+    if (track.smoothed() < kLeast) continue;
     tracks_[kept++] = track;
   }
   tracks_.resize(kept);
+}
+
+void Tracker::start_tracks(std::int64_t stamp_ns, std::span<const Obstacle> found) {
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (track_of_[i] >= 0) continue;
     Track track;
-    learn(track, &found[i], share);
-    track.found_ns = stamp_ns;
+    add_found(stamp_ns, found[i], track);
     track.is_matched = true;
     track.obstacle.id = 0;
     if (!tracks_.push_back(track)) ++dropped_;
   }
-  judge();
+}
 
-  obstacles.clear();
+/// Decides which tracks are published, with hysteresis. A track gets its id when it is published
+/// for the first time.
+void Tracker::choose_published() {
   for (Track& track : tracks_) {
     const bool was_doubted = track.is_doubted;
     track.is_doubted = track.confidence < static_cast<float>(settings_.disappear);
@@ -89,6 +112,10 @@ void Tracker::update(std::int64_t stamp_ns, const Eigen::Vector3d& robot,
       if (track.is_published && track.obstacle.id == 0) track.obstacle.id = next_id_++;
     }
   }
+}
+
+/// Lists the published obstacles within reach of the robot, fragments merged, none in another.
+void Tracker::list_near(const Eigen::Vector3d& robot, FixedVector<Obstacle>& obstacles) {
   published_.clear();
   for (const Track& track : tracks_) {
     if (!track.is_published) continue;
@@ -100,6 +127,7 @@ void Tracker::update(std::int64_t stamp_ns, const Eigen::Vector3d& robot,
   constexpr double kStays = 0.3;  // metres beyond the reach, of what was in the list before
   std::swap(shown_, shown_before_);
   shown_.clear();
+  obstacles.clear();
   for (const Obstacle& obstacle : published_) {
     const bool was_shown = std::ranges::find(shown_before_, obstacle.id) != shown_before_.end();
     const double reach = settings_.reach + (was_shown ? kStays : 0);
@@ -109,7 +137,8 @@ void Tracker::update(std::int64_t stamp_ns, const Eigen::Vector3d& robot,
   }
 }
 
-void Tracker::match(std::span<const Obstacle> found) {
+/// Pairs tracks with what was found, one with one, the nearest first.
+void Tracker::associate(std::span<const Obstacle> found) {
   track_of_.assign(found.size(), -1);
   pairs_.clear();
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
@@ -136,49 +165,57 @@ void Tracker::match(std::span<const Obstacle> found) {
   }
 }
 
-/// Moves the confidences towards those of what was found, or towards none.
-void Tracker::learn(Track& track, const Obstacle* found, float share) const {
-  const bool is_positive = found != nullptr && found->kind == ObstacleKind::positive;
-  const float confidence = found != nullptr ? found->confidence : 0;
-  // The first answers count alike.
-  const float weight =
-      found != nullptr ? std::max(share, 1.0F / static_cast<float>(track.found + 1)) : share;
-  float& positive = track.features[track_positive];
-  float& negative = track.features[track_negative];
-  positive += weight * ((is_positive ? confidence : 0) - positive);
-  negative += weight * ((is_positive ? 0 : confidence) - negative);
-  if (found == nullptr) return;
-  const std::int64_t id = track.obstacle.id;
-  track.obstacle = *found;
-  track.obstacle.id = id;
-  track.is_seen_empty = false;
-  ++track.found;
-  float& best = track.features[track_best];
-  best = std::max(best, confidence);
-  track.features[track_height] = static_cast<float>(found->height);
+/// Moves the smoothed confidences towards new ones.
+void Tracker::smooth(Features& features, float positive, float negative, float weight) {
+  features[track_positive] += weight * (positive - features[track_positive]);
+  features[track_negative] += weight * (negative - features[track_negative]);
 }
 
-/// Confidence and kind of every track. What is published fades, whatever the judge thinks of a
-/// list that misses it.
-void Tracker::judge() {
+/// A track's obstacle becomes the one found, but for its id.
+void Tracker::add_found(std::int64_t stamp_ns, const Obstacle& found, Track& track) const {
+  // The first answers count alike.
+  const float weight =
+      std::max(static_cast<float>(settings_.smoothing), 1.0F / static_cast<float>(track.found + 1));
+  const bool is_positive = found.kind == ObstacleKind::positive;
+  smooth(track.features, is_positive ? found.confidence : 0, is_positive ? 0 : found.confidence,
+         weight);
+  const std::int64_t id = track.obstacle.id;
+  track.obstacle = found;
+  track.obstacle.id = id;
+  track.is_seen_empty = false;
+  track.found_ns = stamp_ns;
+  ++track.found;
+  float& best = track.features[track_best];
+  best = std::max(best, found.confidence);
+  track.features[track_height] = static_cast<float>(found.height);
+}
+
+/// Sets confidence and kind of every track. What is published fades, whatever the network answers
+/// for a list that misses it.
+void Tracker::classify() {
   constexpr float kMostFall = 0.2F, kMostFallEmpty = 0.4F;  // of the confidence, in a list
   for (Track& track : tracks_) {
-    constexpr double kFar = 3;
-    double surer = kFar;
-    for (const Track& other : tracks_) {
-      if (other.smoothed() <= track.smoothed()) continue;
-      const Eigen::Vector3d apart = other.obstacle.center - track.obstacle.center;
-      surer = std::min(surer, apart.head<2>().norm());
-    }
-    track.features[track_surer] = static_cast<float>(surer);
+    track.features[track_surer] = distance_to_surer(track);
     const Prediction prediction =
-        judge_ ? (*judge_)(track.features)
-               : Prediction{track.features[track_positive], track.features[track_negative]};
+        network_ ? (*network_)(track.features)
+                 : Prediction{track.features[track_positive], track.features[track_negative]};
     const float most_fall = track.is_seen_empty ? kMostFallEmpty : kMostFall;
     const float least = track.is_published ? track.confidence - most_fall : 0;
     track.confidence = std::max(prediction.confidence(), least);
     track.obstacle.kind = prediction.kind();
   }
+}
+
+/// As TrackFeature has it.
+float Tracker::distance_to_surer(const Track& track) const {
+  constexpr double kFar = 3;
+  double surer = kFar;
+  for (const Track& other : tracks_) {
+    if (other.smoothed() <= track.smoothed()) continue;
+    const Eigen::Vector3d apart = other.obstacle.center - track.obstacle.center;
+    surer = std::min(surer, apart.head<2>().norm());
+  }
+  return static_cast<float>(surer);
 }
 
 }  // namespace scree

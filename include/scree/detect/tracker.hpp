@@ -16,13 +16,13 @@
 
 namespace scree {
 
-/// What the network that judges tracks is told of one.
+/// What the network that classifies tracks is told of one.
 enum TrackFeature : std::size_t {
-  track_positive,  ///< confidence, smoothed over lists
-  track_negative,  ///< the same of a hole
+  track_positive,  ///< confidence that it is a rock, smoothed over lists
+  track_negative,  ///< confidence that it is a hole, smoothed over lists
   track_best,      ///< most confidence of any list
-  track_height,    ///< above the surrounding ground, as found last, metres
-  track_surer,     ///< to the middle of the nearest track with more confidence, at most 3 m
+  track_height,    ///< height above the surrounding ground, as found last, metres
+  track_surer,     ///< distance to the nearest track with more confidence, at most 3, metres
   kTrackFeatures
 };
 static_assert(std::size_t{kTrackFeatures} <= Features().size(),
@@ -36,7 +36,7 @@ public:
   struct Track {
     Obstacle obstacle;        ///< as found last
     Features features{};      ///< by TrackFeature
-    float confidence = 0;     ///< of its kind, as judged
+    float confidence = 0;     ///< that it is of its kind, as classified
     std::uint32_t found = 0;  ///< lists that had it
     std::int64_t found_ns = 0;
     bool is_published = false;
@@ -48,9 +48,10 @@ public:
     float smoothed() const { return std::max(features[track_positive], features[track_negative]); }
   };
 
-  /// @param judge says from a track's features how sure it is; without, its smoothed confidence
+  /// @param network gives a track's confidence by its features; without it the smoothed confidence
+  /// of the detector's answers counts
   Tracker(const TrackingSettings& settings, std::size_t max_tracks,
-          std::optional<Network> judge = std::nullopt);
+          std::optional<Network> network = std::nullopt);
 
   /// @param robot where it is, in the map's frame
   /// @param found every candidate of this list with its confidence, also low ones, in that frame
@@ -79,15 +80,24 @@ private:
     std::uint32_t track, found;
   };
 
-  void match(std::span<const Obstacle> found);
-  void learn(Track& track, const Obstacle* found, float share) const;
-  void judge();
+  void associate(std::span<const Obstacle> found);
+  void update_matched(std::int64_t stamp_ns, std::span<const Obstacle> found);
+  void update_unmatched(const std::function<Occupancy(const Eigen::Vector3d&)>& occupancy_at);
+  void remove_lost(std::int64_t stamp_ns);
+  void start_tracks(std::int64_t stamp_ns, std::span<const Obstacle> found);
+  void classify();
+  void choose_published();
+  void list_near(const Eigen::Vector3d& robot, FixedVector<Obstacle>& obstacles);
+
+  void add_found(std::int64_t stamp_ns, const Obstacle& found, Track& track) const;
+  static void smooth(Features& features, float positive, float negative, float weight);
+  float distance_to_surer(const Track& track) const;
 
   TrackingSettings settings_;
-  std::optional<Network> judge_;
+  std::optional<Network> network_;
   FixedVector<Track> tracks_;
   FixedVector<Pair> pairs_;
-  FixedVector<std::int32_t> track_of_;  // of each found one, -1 for none
+  FixedVector<std::int32_t> track_of_;  // index of the track of each found one, -1 for none
   FixedVector<Obstacle> published_;
   FragmentMerger fragment_merger_;
   FixedVector<std::int64_t> shown_, shown_before_;  // ids in the list

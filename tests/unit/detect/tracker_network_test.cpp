@@ -8,10 +8,10 @@
 namespace scree {
 namespace {
 
-using TrackerJudgeTest = TrackerTest;
+using TrackerNetworkTest = TrackerTest;
 
 // A rock only where something is high, a hole only where it is deep.
-Network judge() {
+Network height_network() {
   constexpr double kSure = 1000;
   Network network(2, kTrackFeatures);
   network.forms.fill(InputForm::raw);
@@ -29,15 +29,15 @@ Network judge() {
   return network;
 }
 
-TEST_F(TrackerJudgeTest, AJudgeDecidesWhatIsPublishedAndAsWhat) {
-  tracker_ = Tracker(settings_, kMost, judge());
-  EXPECT_EQ(update({at(3, 1, 0.99F)}, 10).size(), 0U) << "sure, but the judge says no";
+TEST_F(TrackerNetworkTest, TheNetworkDecidesWhatIsPublishedAndAsWhat) {
+  tracker_ = Tracker(settings_, kMost, height_network());
+  EXPECT_EQ(update({at(3, 1, 0.99F)}, 10).size(), 0U) << "sure, but the network says no";
   Obstacle high = at(3, 1, 0.2F);
   high.height = 0.7;
-  ASSERT_EQ(update({high}).size(), 1U) << "unsure, but the judge says yes";
+  ASSERT_EQ(update({high}).size(), 1U) << "unsure, but the network says yes";
   EXPECT_EQ(list_[0].kind, ObstacleKind::positive);
   EXPECT_NEAR(list_[0].confidence, 1 / (1 + std::exp(-3)), 1e-6);
-  tracker_ = Tracker(settings_, kMost, judge());
+  tracker_ = Tracker(settings_, kMost, height_network());
   Obstacle deep = at(3, 1);
   deep.height = -0.7;
   update({deep}, 2);
@@ -45,8 +45,8 @@ TEST_F(TrackerJudgeTest, AJudgeDecidesWhatIsPublishedAndAsWhat) {
   EXPECT_EQ(list_[0].kind, ObstacleKind::negative) << "whatever the detector says";
 }
 
-TEST_F(TrackerJudgeTest, WhatTheDetectorNoLongerFindsGoesWhateverTheJudgeSays) {
-  tracker_ = Tracker(settings_, kMost, judge());
+TEST_F(TrackerNetworkTest, WhatTheDetectorNoLongerFindsGoesWhateverTheNetworkSays) {
+  tracker_ = Tracker(settings_, kMost, height_network());
   Obstacle high = at(3, 1);
   high.height = 1;
   update({high}, 10);
@@ -55,7 +55,7 @@ TEST_F(TrackerJudgeTest, WhatTheDetectorNoLongerFindsGoesWhateverTheJudgeSays) {
   EXPECT_LE(updates_until(0, {}), 4);
 }
 
-TEST_F(TrackerJudgeTest, AListThatMissesItDoesNotMakeItFlicker) {
+TEST_F(TrackerNetworkTest, AListThatMissesItDoesNotMakeItFlicker) {
   constexpr double kSure = 100;
   Network strict(1, kTrackFeatures);  // the least doubt is too much for it
   strict.forms.fill(InputForm::raw);
@@ -73,8 +73,8 @@ TEST_F(TrackerJudgeTest, AListThatMissesItDoesNotMakeItFlicker) {
   EXPECT_LE(updates_until(0, {}), 5) << "but it goes";
 }
 
-TEST_F(TrackerJudgeTest, AllocatesNothing) {
-  tracker_ = Tracker(settings_, kMost, judge());
+TEST_F(TrackerNetworkTest, AllocatesNothing) {
+  tracker_ = Tracker(settings_, kMost, height_network());
   const std::vector<Obstacle> found(kMost, at(3, 1));
   const std::size_t before = test::allocations();
   update(found, 20);
