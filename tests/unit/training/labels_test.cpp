@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "scree/detect/detector.hpp"
 #include "unit/detect/clouds.hpp"
 
 namespace scree {
