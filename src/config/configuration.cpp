@@ -154,7 +154,7 @@ private:
   std::optional<Error> error_;
 };
 
-/// Of two or more keys that do not go together.
+/// Two or more keys that do not go together.
 struct Contradiction {
   std::vector<std::string> keys;
   std::string reason;
@@ -298,7 +298,8 @@ std::vector<std::filesystem::path> drop_ins(std::filesystem::path file) {
   return found;
 }
 
-/// Of the files that keys name; those of the defaults come with Scree.
+/// An error for a file that a key names and that is not there; those of the defaults come with
+/// Scree.
 std::optional<Error> missing_file(const Configuration& configuration,
                                   const std::filesystem::path& config_file) {
   for (const auto& [key, name] : named_files(configuration.settings)) {

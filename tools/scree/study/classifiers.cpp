@@ -66,9 +66,10 @@ std::vector<Parts> gather(const std::vector<Way>& ways, const StudyTask& task) {
   return all;
 }
 
-Scores judge(std::span<const Sample> samples, const std::function<Label(const Features&)>& answer) {
+Scores score(std::span<const Sample> samples,
+             const std::function<Label(const Features&)>& classify) {
   Scores scores;
-  for (const Sample& sample : samples) scores.count(sample.label, answer(sample.features));
+  for (const Sample& sample : samples) scores.count(sample.label, classify(sample.features));
   return scores;
 }
 
@@ -92,7 +93,7 @@ Svm best_svm(const Parts& parts, const Network& normalisation) {
   for (const double cost : {1.0, 10.0, 100.0}) {
     for (const double width : {0.03, 0.1, 0.3, 1.0}) {
       Svm svm(parts.training.samples, normalisation, {cost, width});
-      const double f1 = judge(parts.validation.samples, std::cref(svm)).all().f1();
+      const double f1 = score(parts.validation.samples, std::cref(svm)).all().f1();
       if (f1 <= best_f1) continue;
       best_f1 = f1;
       best = std::move(svm);
@@ -141,7 +142,7 @@ void study_classifiers(const StudyTask& task) {
     add(w, "LM-BP", score_network(trained, parts, least));
     add(w, "BPNN", score_network(back_propagated(parts, settings), parts, least));
     const Svm svm = best_svm(parts, trained);
-    add(w, "SVM", judge(parts.test.samples, std::cref(svm)).all());
+    add(w, "SVM", score(parts.test.samples, std::cref(svm)).all());
   }
   chart.series.push_back({"LM-BP as the paper prints it", kPaperColour, {0.963, 0.988, 0.975}});
   table += "\"paper (fig. 21)\",LM-BP,,325,,,,,0.963,0.988,0.975\n";

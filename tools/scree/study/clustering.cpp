@@ -43,7 +43,7 @@ struct Fit {
 };
 
 /// An obstacle is in a cluster that has a tenth of its clustered points, and at least five.
-void judge(const ClusteredPoints& found, const CloudWorld& world, Fit& fit) {
+void compare(const ClusteredPoints& found, const CloudWorld& world, Fit& fit) {
   constexpr double kGrowth = 0.15;
   const auto clusters = found.clusters.all();
   const PointCloud& points = found.points.points;
@@ -130,7 +130,7 @@ void study_clustering(const StudyTask& task) {
         Detector detector = detector_of(settings, task);
         list_of(detector, world.cloud);
         if (w == 0) threshold = threshold_for(detector, kPaperEdgeShare);
-        judge(detector.clustered(), world, fits[w]);
+        compare(detector.clustered(), world, fits[w]);
         if (i == 0) draw(page, w, detector.clustered(), world, ways[w].name);
       }
       progress(i + 1);
