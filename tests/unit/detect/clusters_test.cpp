@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "scree/detect/ground_height.hpp"
-#include "scree/detect/supervoxels.hpp"
+#include "scree/detect/label.hpp"
 
 namespace scree {
 namespace {
