@@ -7,10 +7,9 @@
 #include "scree/detect/label.hpp"
 
 namespace scree {
-namespace {
 
 /// What nanoflann asks of the points.
-struct TreePoints {
+struct KdTreeClusters::TreePoints {
   PointView points;
 
   std::size_t kdtree_get_point_count() const { return points.size(); }
@@ -19,14 +18,11 @@ struct TreePoints {
   }
 };
 
-using Metric = nanoflann::L2_Simple_Adaptor<float, TreePoints>;
-
-}  // namespace
-
 /// nanoflann builds the tree. Its nodes come from memory taken once, instead of from the pool that
 /// nanoflann's own index frees and takes anew with each cloud.
 class KdTreeClusters::Tree
-    : public nanoflann::KDTreeBaseClass<KdTreeClusters::Tree, Metric, TreePoints, 3> {
+    : public nanoflann::KDTreeBaseClass<
+          KdTreeClusters::Tree, nanoflann::L2_Simple_Adaptor<float, TreePoints>, TreePoints, 3> {
   struct Nodes {
     FixedVector<Node> nodes;
 

@@ -20,6 +20,10 @@ T value_or_fail(Result<T> result) {
   if (!result) throw Failure(result.error().message);
   return std::move(*result);
 }
+/// Throws Failure where something was not done.
+inline void require(const Result<void>& done) {
+  if (!done) throw Failure(done.error().message);
+}
 
 // One file a subcommand; each adds itself with its options and its callback, and is called in
 // main.cpp. Only the asked-for result goes to stdout.

@@ -64,7 +64,7 @@ void run(const CLI::App& command, const SimulateOptions& options) {
     written = write_cloud(options.cloud, options.points, seed,
                           scene ? cloud_terrain(*scene, seed) : TerrainSettings());
   }
-  if (!written) throw Failure(written.error().message);
+  require(written);
 }
 
 void add_faults(CLI::App& command, SimulateOptions& options, CLI::Option* cloud) {

@@ -189,9 +189,8 @@ void run(TrainOptions options) {
                                  is_track ? settings.track.appear : detect.min_confidence);
   fmt::print("\nsamples of the held-out part:\n{}", table_of(scores));
 
-  const auto saved = trained.network.save(
-      options.out, provenance(options, detect, parts, trained.results, scores));
-  if (!saved) throw Failure(saved.error().message);
+  require(trained.network.save(options.out,
+                               provenance(options, detect, parts, trained.results, scores)));
   fmt::print("\nwrote {}\n", options.out);
 }
 

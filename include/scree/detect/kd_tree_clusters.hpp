@@ -29,6 +29,7 @@ public:
   std::span<const std::uint32_t> sizes() const { return sizes_; }
 
 private:
+  struct TreePoints;
   class Tree;
   std::unique_ptr<Tree> tree_;
   FixedVector<std::uint32_t> labels_, sizes_, queue_;

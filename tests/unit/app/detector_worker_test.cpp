@@ -12,8 +12,6 @@
 namespace scree {
 namespace {
 
-using std::chrono::milliseconds;
-
 constexpr std::size_t kSweeps = 3, kLists = 2;
 // A sweep that ends shortly after the last sample: the next one is worth waiting for.
 constexpr std::int64_t kSampleNs = 1'000 * kSecond, kEndNs = kSampleNs + 10 * kMillisecond;
@@ -60,7 +58,7 @@ protected:
   static bool until(const std::function<bool()>& holds) {
     for (int i = 0; i < 60'000; ++i) {
       if (holds()) return true;
-      std::this_thread::sleep_for(milliseconds(1));
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     return false;
   }
@@ -124,7 +122,7 @@ TEST_F(DetectorWorkerTest, ASweepGoesOnWithTheSampleThatCoversIt) {
   sensors_.put(imu_sample(kSampleNs));
   start(&sensors_, 60);
   push_sweep(kEndNs);
-  std::this_thread::sleep_for(milliseconds(20));
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
   EXPECT_EQ(processed_, 0);
   sensors_.put(imu_sample(kEndNs));
   ASSERT_NE(next_list(), nullptr);

@@ -7,14 +7,6 @@
 #include "commands.hpp"
 
 namespace scree::cli {
-namespace {
-
-void require(const Result<void>& done) {
-  if (!done) throw Failure(done.error().message);
-}
-
-}  // namespace
-
 template <class Device, class Open>
 bool Recorder::is_open(std::optional<Device>& device, std::int64_t now_ns, Open open) {
   constexpr std::int64_t kRetryAfter = 1'000'000'000;

@@ -47,10 +47,6 @@ Slice find_slice(const SliceOptions& options, const Settings& settings) {
                                          slice ? event.arrival_ns - slice->start_ns : 0));
 }
 
-void require(const Result<void>& done) {
-  if (!done) throw Failure(done.error().message);
-}
-
 void copy_records(PcapReader reader, const Slice& slice, const fs::path& file) {
   auto writer = value_or_fail(PcapWriter::create_like(file, reader));
   for (PcapRecord record; reader.next(record);) {

@@ -62,19 +62,19 @@ CloudWorld varied_world(std::uint64_t seed) {
   return {varied_terrain(seed), varied_cloud(seed), seed};
 }
 
-FindClusters finder_of(const Rung& rung) {
+FindClusters finder_of_rung(const Rung& rung) {
   const DetectorLimits limits = MemorySettings().for_cloud();
   if (rung.in_between) {
     auto between = std::make_shared<SurfaceRung>(rung.detect, limits, *rung.in_between);
     return [between](PointView cloud) { return between->find(cloud); };
   }
   auto detector = std::make_shared<Detector>(rung.detect, limits, Network());
-  return [detector](PointView cloud) { return cli::finder_of(*detector)(cloud); };
+  return [detector](PointView cloud) { return finder_of(*detector)(cloud); };
 }
 
 std::vector<FindClusters> finders_of(const std::vector<Rung>& rungs) {
   std::vector<FindClusters> finders;
-  for (const Rung& rung : rungs) finders.push_back(finder_of(rung));
+  for (const Rung& rung : rungs) finders.push_back(finder_of_rung(rung));
   return finders;
 }
 
