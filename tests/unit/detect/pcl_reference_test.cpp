@@ -15,6 +15,7 @@
 #include "scree/detect/elevation_gradient.hpp"
 #include "scree/detect/euclidean_clusters.hpp"
 #include "scree/detect/kd_tree_clusters.hpp"
+#include "scree/detect/label.hpp"
 #include "scree/detect/supervoxels.hpp"
 #include "scree/detect/voxel_grid.hpp"
 
