@@ -25,8 +25,8 @@ float sum(Lanes lanes) {
   return total;
 }
 
-/// exp(-t) as (exp(-t / 2^n))^(2^n): the arguments are small, because only neighbours within the
-/// radius count, so a short polynomial is exact to a float's rounding.
+/// Takes exp(-t) as (exp(-t / 2^n))^(2^n). Only neighbours within the radius count, so t has a
+/// largest value; with arguments up to 1/4 a short polynomial is exact to a float's rounding.
 struct ShortExp {
   float scale = 1;
   int squarings = 0;
@@ -42,8 +42,8 @@ struct ShortExp {
 /// What the inner loop needs, so that it reads registers only.
 struct Kernel {
   Lanes offset_x, offset_y;
-  float square;    // of the radius
-  float exponent;  // of the squared distance
+  float square;    // square of the radius, square metres
+  float exponent;  // factor of the squared distance in the exponent
   int squarings;
   int min_neighbours;
 };

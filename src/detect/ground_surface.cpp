@@ -31,7 +31,7 @@ GroundSurface::GroundSurface(std::size_t max_points, std::size_t max_cells)
 void GroundSurface::build(PointView points, const GroundSurfaceSettings& settings) {
   // Cells too small for the density of the points leave the ground in tatters.
   constexpr float kGrowth = 1.25F;
-  constexpr int kMostGrowths = 8;
+  constexpr int kMostGrowths = 8;  // up to six times the size
   float cell_size = settings.cell_size;
   for (int growth = 0;; ++growth, cell_size *= kGrowth) {
     lay_out(points, cell_size);
@@ -42,7 +42,7 @@ void GroundSurface::build(PointView points, const GroundSurfaceSettings& setting
 
 void GroundSurface::build_below(std::span<const std::uint8_t> loose,
                                 const GroundSurfaceSettings& settings) {
-  constexpr double kLow = 0.05;  // noise lies lower still
+  constexpr double kLow = 0.05;  // share of a cell's points that is noise below the ground
   for (std::size_t cell = 0; cell < seen_.size(); ++cell) {
     if (loose[cell] != 0) seen_[cell] = height_in(cell, kLow);
   }
@@ -195,7 +195,8 @@ void GroundSurface::add_trend(float sign,
   }
 }
 
-/// Rings make many small patches, of which the largest may be any.
+/// Makes ground of the patches that lie on the trend. A lidar's rings make many small patches, and
+/// the largest of them need not be ground.
 void GroundSurface::join_trend(float tolerance) {
   constexpr float kShare = 0.5F;  // the trend is not as near to the ground as the surface will be
   for (std::size_t cell = 0; cell < patch_.size(); ++cell) {
@@ -208,7 +209,7 @@ void GroundSurface::join_trend(float tolerance) {
 }
 
 void GroundSurface::join_patches(float tolerance) {
-  constexpr int kRounds = 3;
+  constexpr int kRounds = 3;  // patches that join let others join, which is soon at an end
   const std::size_t cells = columns_ * rows_;
   smooth_.resize(cells);
   if (!patches_.empty()) {

@@ -9,12 +9,13 @@
 namespace scree {
 namespace {
 
-constexpr float kBlock = 1;  // metres
-constexpr std::size_t kLeastSide = 4;
-// Metres, from round to round: what is off by more hardly counts.
+constexpr float kBlock = 1;            // side of a block, metres
+constexpr std::size_t kLeastSide = 4;  // cells
+// From round to round, metres: a block that is off by more hardly counts. In the first round all
+// count alike.
 constexpr std::array kScales = {1e6F, 0.6F, 0.3F, 0.15F};
 
-/// Of a block that lies this far from the trend.
+/// Weight of a block that lies this far from the trend (Geman and McClure's).
 float robust(float distance, float scale) {
   const float ratio = distance / scale;
   const float inlier = 1 / (1 + ratio * ratio);
@@ -31,7 +32,7 @@ public:
   }
   /// Level, at height zero, where nothing speaks against it.
   Eigen::Vector3f solve() const {
-    constexpr float kHeight = 0.001F, kSlope = 1;
+    constexpr float kHeight = 0.001F, kSlope = 1;  // weights of a ridge regression
     Eigen::Matrix3f normal = normal_;
     normal.diagonal() += Eigen::Vector3f(kHeight, kSlope, kSlope);
     return normal.ldlt().solve(right_);
@@ -117,13 +118,14 @@ void GroundTrend::fit_around() {
   for (std::size_t row = 0; row < rows_; ++row) {
     for (std::size_t column = 0; column < columns_; ++column) {
       Block& here = blocks_[row * columns_ + column];
-      here.trend = here.plane + left_over(column, row);
+      here.trend = here.plane + residual_at(column, row);
     }
   }
 }
 
-/// Height above the plane through the whole raster.
-float GroundTrend::left_over(std::size_t column, std::size_t row) const {
+/// Fits a plane around a block to the residuals of the plane through the whole raster.
+/// @return its height at the block, metres
+float GroundTrend::residual_at(std::size_t column, std::size_t row) const {
   Plane plane;
   const std::size_t window = kernel_.size() - 1;
   const auto away = [](std::size_t a, std::size_t b) { return a > b ? a - b : b - a; };

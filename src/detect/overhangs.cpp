@@ -6,7 +6,7 @@
 namespace scree {
 
 void Overhangs::remove(PointCloud& cloud, float clearance) {
-  constexpr std::uint32_t kGroundRank = 2;
+  constexpr std::uint32_t kGroundRank = 2;  // from 0
   columns_.build(cloud, kRadius);
   const PointCloud& sorted = columns_.points();
   cloud.clear();

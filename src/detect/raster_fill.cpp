@@ -11,10 +11,10 @@ std::size_t pyramid_cells(std::size_t cells, std::size_t levels) {
   return 2 * cells + 4 * levels;
 }
 
-/// All cells of a row at once: that the one to the left has not been relaxed yet costs less than
-/// waiting for it.
-/// @param above, below at the raster's edge the row itself
-/// @param weights 1 of cells that stay, 0 of the others
+/// Relaxes all cells of a row at once. The cell to the left of each has not been relaxed yet then,
+/// which costs less than waiting for it.
+/// @param above, below the next rows; at the raster's edge the row itself
+/// @param weights 1 for cells that stay, 0 for the others
 /// @param relaxed room for a row
 void relax_row(float* here, const float* above, const float* below, const float* weights,
                float* relaxed, std::size_t columns) {
@@ -97,7 +97,7 @@ void RasterFill::push(const Level& coarse, const Level& fine) {
 }
 
 void RasterFill::relax(const Level& level) {
-  constexpr int kSteps = 12;
+  constexpr int kSteps = 12;  // smooths a level over a few cells; the coarser ones did the rest
   relaxed_.resize(level.columns);
   for (int step = 0; step < kSteps; ++step) {
     for (std::size_t row = 0; row < level.rows; ++row) {

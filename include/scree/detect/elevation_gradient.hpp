@@ -19,9 +19,10 @@ struct ElevationGradient {
   float reach() const { return spacing + radius; }
 
   /// Writes for every sorted point of `cells` the slope of the elevation along x and y (metres per
-  /// metre); both NaN where one of the eight positions has too few neighbours: not known is not
+  /// metre). Both are NaN where one of the eight positions has too few neighbours: not known is not
   /// zero.
-  /// @param wanted where it is not empty: zero for points whose slope nobody asks for; they get NaN
+  /// @param wanted for each sorted point whether its slope is wanted, or empty where all are; a
+  /// point with 0 gets NaN
   void compute(const PlaneCells& cells, std::span<const std::uint8_t> wanted,
                std::span<float> slope_x, std::span<float> slope_y) const;
 };

@@ -14,11 +14,11 @@
 namespace scree {
 
 struct GroundSurfaceSettings {
-  float cell_size;    ///< of the raster, metres; larger where the cloud is too sparse or too wide
+  float cell_size;    ///< edge of a cell of the raster, metres; more for a sparse or wide cloud
   float cell_points;  ///< least mean number of points in the cells that have any
   float max_slope;    ///< steeper cells are no ground, metres per metre
   float tolerance;    ///< a smooth patch this close to the ground's surface belongs to it, metres
-  float trend_reach;  ///< of GroundTrend, metres; 0: without it
+  float trend_reach;  ///< reach of GroundTrend, metres; 0: without it
 };
 
 /// The surface that the robot could drive on, under rocks and over holes. Cells of the plane that
@@ -33,18 +33,18 @@ public:
 
   /// @pre finite points, no more than max_points of them
   void build(PointView points, const GroundSurfaceSettings& settings);
-  /// The last build again, but in loose cells what was seen lowest is the height instead of the
-  /// median: below grass the ground goes on. The raster stays.
-  /// @param loose of each cell of the raster, 0 where it is not
+  /// Builds the surface of the same points again. In loose cells the height is what was seen lowest
+  /// instead of the median: below grass the ground goes on. The raster stays.
+  /// @param loose for each cell of the raster whether it is loose; 0: it is not
   void build_below(std::span<const std::uint8_t> loose, const GroundSurfaceSettings& settings);
 
-  /// z of the surface of the last build, bilinear, metres. Any place: outside the nearest cell
-  /// answers.
+  /// Gives z of the surface of the last build, bilinear, metres. A place outside the raster has the
+  /// height of the nearest cell.
   float height(float x, float y) const;
 
-  // The raster, row by row, for those who walk over it.
+  // The raster, row by row, for stages that walk over it.
   bool is_ground(std::size_t cell) const { return ground_[cell] != 0; }
-  /// Of a cell that is ground: distance of its height from the surface, metres.
+  /// Distance of the height that was seen in a cell from the surface, metres. @pre is_ground(cell)
   float roughness(std::size_t cell) const { return std::abs(seen_[cell] - smooth_[cell]); }
   std::size_t columns() const { return columns_; }
   std::size_t rows() const { return rows_; }
@@ -53,16 +53,17 @@ public:
   /// Place on the raster in cells, from its edge; at least 2 cells lie beyond every point.
   float column_of(float x) const { return (x - low_x_) * inverse_; }
   float row_of(float y) const { return (y - low_y_) * inverse_; }
-  /// Points in a cell; 0: not seen.
+  /// Number of points in a cell; 0: not seen.
   std::uint32_t points_in(std::size_t cell) const { return begin_[cell + 1] - begin_[cell]; }
 
 private:
   void lay_out(PointView points, float cell_size);
   /// The height below which this share of a cell's points lies; NaN without a point.
   float height_in(std::size_t cell, double share);
-  /// Returns the mean number of points in the cells that have any.
+  /// Sorts the points by cells and sets the heights of these.
+  /// @return the mean number of points in the cells that have any
   float gather(PointView points);
-  /// From the heights of the cells.
+  /// Finds the ground and lays the surface through it, from the heights of the cells.
   void find_ground(const GroundSurfaceSettings& settings);
   void find_smooth_cells(float max_slope);
   void find_patches(float max_slope);
@@ -75,12 +76,12 @@ private:
 
   float cell_ = 1, inverse_ = 1, low_x_ = 0, low_y_ = 0;
   std::size_t columns_ = 0, rows_ = 0;
-  FixedVector<std::uint32_t> begin_;  // of each cell's points in z_, and one more
-  FixedVector<float> z_;              // of the points, cell by cell
-  FixedVector<float> seen_;           // height of each cell: build(), build_below(); NaN: no point
+  FixedVector<std::uint32_t> begin_;  // where each cell's points begin in z_, and one more
+  FixedVector<float> z_;              // z of the points, cell by cell
+  FixedVector<float> seen_;           // height seen in each cell; NaN: no point
   FixedVector<float> smooth_;         // scratch: blurred heights, then the ground's
   FixedVector<std::uint8_t> ground_;
-  FixedVector<std::uint32_t> patch_;  // of each cell
+  FixedVector<std::uint32_t> patch_;  // number of each cell's patch
   FixedVector<std::uint32_t> queue_;
   struct Patch {
     std::uint32_t cells = 0;

@@ -7,31 +7,33 @@
 
 namespace scree {
 
-/// How the ground runs on the whole, from what is known of a raster here and there: planes fitted
-/// around each place by robust locally weighted regression (Cleveland, Robust Locally Weighted
-/// Regression and Smoothing Scatterplots, 1979) to what a plane through all leaves over. It goes on
-/// with the slope where rings lie far apart, and what stands on the ground or lies below it hardly
-/// moves it. Memory is taken once.
+/// How the ground runs on the whole, from what is known of a raster here and there. A plane is
+/// fitted to all heights, and to its residuals a plane around each place, by robust locally
+/// weighted regression (Cleveland, Robust Locally Weighted Regression and Smoothing Scatterplots,
+/// 1979). The trend goes on with the slope where rings lie far apart, and what stands on the ground
+/// or lies below it hardly moves it. Memory is taken once.
 class GroundTrend {
 public:
   explicit GroundTrend(std::size_t max_cells);
 
-  /// @param known not zero where `heights` counts. Row by row, `columns` a row.
+  /// Fits the trend to a raster, given row by row.
+  /// @param known for each cell whether `heights` counts; 0: it does not
+  /// @param heights of the cells, metres
   /// @param cell_size edge of a cell, metres
   /// @param reach standard deviation of the weights around a place, metres
   /// @pre columns * rows <= max_cells
   void fit(std::size_t columns, std::size_t rows, const std::uint8_t* known, const float* heights,
            float cell_size, float reach);
 
-  /// At a cell of the raster, bilinear between the blocks' middles, metres.
+  /// The trend's height at a cell of the raster, metres; bilinear between the blocks' middles.
   float at(std::size_t column, std::size_t row) const;
 
 private:
   struct Block {
-    float height = 0;  ///< mean of the known cells
-    float weight = 0;  ///< 0: nothing known
-    float plane = 0;   ///< through the whole raster
-    float trend = 0;
+    float height = 0;  ///< mean of the known cells, metres
+    float weight = 0;  ///< from 0, nothing known, to 1
+    float plane = 0;   ///< height of the plane through the whole raster, metres
+    float trend = 0;   ///< height of the trend, metres
     float counts = 0;  ///< weight in the next round
   };
   void gather(std::size_t columns, std::size_t rows, const std::uint8_t* known,
@@ -39,11 +41,11 @@ private:
   void fit_whole();
   void weigh_by_distance(float reach);  // in blocks
   void fit_around();
-  float left_over(std::size_t column, std::size_t row) const;
+  float residual_at(std::size_t column, std::size_t row) const;
 
   static constexpr std::size_t kMostWindow = 64;  // blocks to each side
 
-  std::size_t side_ = 1;  // of a block, cells
+  std::size_t side_ = 1;  // cells along the side of a block
   std::size_t columns_ = 0, rows_ = 0;
   FixedVector<Block> blocks_;
   FixedVector<float> kernel_;  // weight by distance in blocks, along one axis

@@ -13,10 +13,10 @@ namespace scree {
 struct OrientedBox {
   float center_x = 0, center_y = 0;
   float length = 0, width = 0;  ///< length >= width
-  float yaw = 0;                ///< of the length, in (-pi/2, pi/2]
+  float yaw = 0;                ///< direction of the length, in (-pi/2, pi/2]
 
-  /// Gives the distance of a position (x, y) from the box in the plane; 0 inside. For many
-  /// positions: the box's direction is worked out once.
+  /// Returns a function that gives the distance of a position (x, y) from the box in the plane; 0
+  /// inside. It serves for many positions: the box's direction is worked out once.
   auto distances() const {
     return [box = *this, c = std::cos(yaw), s = std::sin(yaw)](float x, float y) {
       const float dx = x - box.center_x, dy = y - box.center_y;
@@ -28,8 +28,8 @@ struct OrientedBox {
   }
 };
 
-/// The smallest of the rectangles around the given points of a cloud, among 90 directions a degree
-/// apart. @pre `indices` is not empty
+/// The smallest rectangle around the given points of a cloud, of 90 directions a degree apart.
+/// @pre `indices` is not empty
 OrientedBox smallest_box(PointView points, std::span<const std::uint32_t> indices);
 
 }  // namespace scree

@@ -4,8 +4,8 @@
 
 namespace scree {
 
-/// Removes what the robot passes under: branches, ceilings, bridges. The paper has no such stage;
-/// an elevation that averages a canopy with the ground below it is nobody's height.
+/// Removes what the robot passes under: branches, ceilings, bridges. The paper has no such stage,
+/// but an elevation that averages a canopy with the ground below it is nobody's height.
 class Overhangs {
 public:
   /// Edge of the columns, metres: wide enough to see some ground beside a trunk, narrow enough for
@@ -14,8 +14,8 @@ public:
 
   explicit Overhangs(std::size_t max_points) : columns_(max_points), heights_(max_points) {}
 
-  /// Takes out of `cloud` the points more than `clearance` metres above the ground of their column:
-  /// its third-lowest point, so that one or two stray ones below the ground do no harm.
+  /// Takes out of `cloud` the points more than `clearance` metres above the ground of their column.
+  /// That ground is the third-lowest point, so that one or two stray points below it do no harm.
   /// @pre as PlaneCells::build() with a radius of kRadius
   void remove(PointCloud& cloud, float clearance);
 

@@ -13,13 +13,13 @@
 namespace scree {
 
 /// Points sorted into square cells of the horizontal plane, row by row. The points of neighbouring
-/// cells of one row then lie side by side, so a neighbourhood is a few runs of memory; walking the
-/// cells in order finds them by cursors that only move forward, without a table of the plane.
+/// cells of one row then lie side by side, so a neighbourhood is a few runs of memory. A walk over
+/// the cells in order finds these runs by cursors that only move forward. No table is needed.
 class PlaneCells {
 public:
   explicit PlaneCells(std::size_t max_points);
 
-  /// Edge of a cell. A hair more than the share of the radius, because quotients are rounded.
+  /// Edge of a cell, metres: a hair more than its share of the radius, as quotients are rounded.
   static float cell_size(float radius) { return radius * 1.0001F / static_cast<float>(kReach); }
 
   /// Sorts `cloud`, for neighbourhoods of `radius` metres.
@@ -47,7 +47,7 @@ public:
   void for_each_run(float low_x, float high_x, float low_y, float high_y, Visit&& visit) const;
 
 private:
-  static constexpr int kReach = 3;
+  static constexpr int kReach = 3;  // cells of a radius: more fit closer and make more runs
   static constexpr std::size_t kRows = 2 * kReach + 1;
 
   std::uint64_t key_at(std::uint64_t row, std::uint64_t column) const {
@@ -57,7 +57,7 @@ private:
 
   float inverse_ = 1;
   CellRange column_range_, row_range_;
-  std::uint64_t columns_ = 0;  // of the plane widened by kReach empty cells on every side
+  std::uint64_t columns_ = 0;  // of a plane with kReach empty cells more on every side
   KeySort sort_;
   PointCloud points_;
 };

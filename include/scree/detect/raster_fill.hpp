@@ -8,22 +8,24 @@
 
 namespace scree {
 
-/// Gives the unknown cells of a raster smooth heights that meet the known ones: averages are pulled
+/// Gives the unknown cells of a raster smooth heights that meet the known ones. Averages are pulled
 /// up a pyramid and pushed down again (Gortler et al., The Lumigraph, SIGGRAPH 1996,
-/// section 3.4.2), and each level is relaxed towards the mean of its four neighbours, so that a
+/// section 3.4.2). Each level is relaxed towards the mean of a cell's four neighbours, so that a
 /// hole in a slope is spanned by the slope. Memory is taken once.
 class RasterFill {
 public:
   explicit RasterFill(std::size_t max_cells);
 
-  /// @param known not zero where `heights` is to be kept; other heights are overwritten (0 where
-  /// nothing at all is known). Row by row, `columns` a row.
+  /// Fills a raster, given row by row.
+  /// @param known for each cell whether its height is kept; 0: it is overwritten
+  /// @param heights of the cells, metres; all become 0 where nothing at all is known
   /// @pre columns * rows <= max_cells
   void fill(std::size_t columns, std::size_t rows, const std::uint8_t* known, float* heights);
 
 private:
   struct Level {
-    std::size_t columns, rows, first;  // first: place of its cells in heights_ and weights_
+    std::size_t columns, rows;
+    std::size_t first;  // place of its first cell in heights_ and weights_
 
     std::size_t at(std::size_t column, std::size_t row) const {
       return first + row * columns + column;
@@ -34,10 +36,10 @@ private:
   void push(const Level& coarse, const Level& fine);
   void relax(const Level& level);
 
-  static constexpr std::size_t kMostLevels = 24;
+  static constexpr std::size_t kMostLevels = 24;  // for rasters of up to 2^23 cells on a side
   FixedVector<Level> levels_;
   FixedVector<float> heights_, weights_;
-  FixedVector<float> relaxed_;  // a row
+  FixedVector<float> relaxed_;  // scratch: one row
 };
 
 }  // namespace scree

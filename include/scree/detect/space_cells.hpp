@@ -27,10 +27,11 @@ public:
   /// @pre limit <= reach_of_cells(cell_size, max_points, 3), no more than max_points points
   void build(PointView points, float cell_size, float limit);
 
-  /// Points that were taken.
+  /// Number of points that were taken.
   std::size_t size() const { return sort_.size(); }
-  /// Occupied cells, row by row and column by column upwards.
+  /// Number of occupied cells. They are in order row by row, then column by column, then upwards.
   std::size_t cells() const { return keys_.size(); }
+  /// The sorted points of a cell.
   Run run(std::size_t cell) const { return {begin_[cell], begin_[cell + 1]}; }
   /// Index in the cloud given to build() of a sorted point; ascending within a cell.
   std::uint32_t source(std::size_t sorted) const { return sort_.index(sorted); }
@@ -52,7 +53,7 @@ private:
     const std::uint64_t layer = layer_range_.offset(floor_to_cell(z * inverse_)) + kReach;
     return (row * columns_ + column) * layers_ + layer;
   }
-  /// To add to a key; wraps round as unsigned numbers do.
+  /// What is added to a key to get that of a neighbour; wraps round as unsigned numbers do.
   std::uint64_t step(int rows, int columns, int layers) const {
     const auto wide = [](int value) { return static_cast<std::uint64_t>(std::int64_t{value}); };
     return (wide(rows) * columns_ + wide(columns)) * layers_ + wide(layers);
@@ -61,7 +62,7 @@ private:
 
   float inverse_ = 1;
   CellRange row_range_, column_range_, layer_range_;
-  std::uint64_t columns_ = 0, layers_ = 0;  // of the space widened by kReach empty cells all round
+  std::uint64_t columns_ = 0, layers_ = 0;  // of a space with kReach empty cells more all around
   KeySort sort_;
   FixedVector<std::uint64_t> keys_;   // of the occupied cells, ascending
   FixedVector<std::uint32_t> begin_;  // first sorted point of each, and one past the last

@@ -7,12 +7,12 @@ namespace scree {
 
 /// What came of the points that were given to a stage.
 struct Intake {
-  std::size_t dropped = 0;  ///< beyond capacity
-  std::size_t refused = 0;  ///< not finite, or beyond the range of the cells
+  std::size_t dropped = 0;  ///< points beyond capacity
+  std::size_t refused = 0;  ///< points that are not finite, or beyond the range of the cells
 };
 
-/// Thins a cloud to the centroid of each occupied voxel (paper fig. 11); voxels are anchored at the
-/// origin, as pcl::VoxelGrid has them.
+/// Thins a cloud to the centroid of each occupied voxel (paper fig. 11). Voxels are anchored at the
+/// origin, as those of pcl::VoxelGrid are.
 class VoxelGrid {
 public:
   explicit VoxelGrid(std::size_t max_points) : cells_(max_points) {}
@@ -26,7 +26,7 @@ private:
   SpaceCells cells_;
 };
 
-/// Copies what VoxelGrid would take; stands in for it where it is switched off.
+/// Copies the points that VoxelGrid would take, for clouds that are not thinned.
 Intake copy_finite(PointView cloud, float limit, PointCloud& out);
 
 }  // namespace scree
