@@ -152,7 +152,7 @@ void Tracker::associate(std::span<const Obstacle> found) {
       if (!pairs_.push_back(pair)) ++dropped_;
     }
   }
-  // Of two tracks on one thing the one that had it last keeps it.
+  // Where two tracks are on one thing, the one that had it last keeps it.
   std::sort(pairs_.begin(), pairs_.end(), [](const Pair& a, const Pair& b) {
     if (a.was_matched != b.was_matched) return a.was_matched;
     if (a.distance != b.distance) return a.distance < b.distance;

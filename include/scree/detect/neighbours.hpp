@@ -5,7 +5,7 @@
 
 namespace scree {
 
-/// Of the neighbours, those to the four sides; the others lie at the corners.
+/// Number of neighbours to the sides of a cell; they come first, the others lie at its corners.
 inline constexpr std::size_t kSides = 4;
 
 /// The neighbours of a cell of a raster: to its four sides, then at its four corners.
