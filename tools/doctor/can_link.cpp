@@ -1,9 +1,10 @@
 #include "doctor/can_link.hpp"
 
 #include <linux/can/netlink.h>
-#include <linux/if_arp.h>
 #include <linux/if_link.h>
 #include <linux/rtnetlink.h>
+#include <net/if.h>
+#include <net/if_arp.h>
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>

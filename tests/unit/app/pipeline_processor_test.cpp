@@ -9,7 +9,7 @@
 namespace scree {
 namespace {
 
-Settings small_settings() {
+Settings map_settings() {
   Settings settings;
   settings.lidar = test::usual_lidar();
   settings.memory.sweep_points = 1 << 13;
@@ -26,7 +26,7 @@ protected:
     return sweep;
   }
 
-  Settings settings_ = small_settings();
+  Settings settings_ = map_settings();
   Pipeline pipeline_{settings_, Networks()};
   PipelineProcessor processor_{pipeline_, settings_.track};
   DetectionReport report_;
