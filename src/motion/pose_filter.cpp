@@ -20,7 +20,7 @@ constexpr double kDrift = 0.001;       // of the yaw, rad/s
 constexpr double kDriftWalk = 0.001;   // rad/s in a square root of a second: heading filters wander
 constexpr double kScale = 0.015;       // of the wheel's circumference
 constexpr double kScaleWalk = 0.001;   // in a square root of a metre
-constexpr double kSlip = 0.02;         // along the way, metres in a square root of a metre ...
+constexpr double kSlipNoise = 0.02;    // along the way, metres in a square root of a metre ...
 constexpr double kSideSlip = 0.006;    // ... across it ...
 constexpr double kHeave = 0.008;       // ... and upwards
 constexpr double kShake = 0.001;       // metres in each direction each step
@@ -131,7 +131,7 @@ bool PoseFilter::watch_rest(const MotionStep& step) {
 void PoseFilter::add_position_noise(const MotionStep& step) {
   const double distance = std::abs(step.distance);
   const Eigen::Matrix3d to_map = (level_ * step.attitude).toRotationMatrix();
-  Eigen::Vector3d variances(square(kSlip) * distance, square(kSideSlip) * distance,
+  Eigen::Vector3d variances(square(kSlipNoise) * distance, square(kSideSlip) * distance,
                             square(kHeave) * distance);
   variances.array() += square(kShake);
   if (!step.knows_distance) variances.x() += square(kSilentWay) * step.seconds();
