@@ -74,6 +74,7 @@ FindClusters finder_of_rung(const Rung& rung) {
 
 std::vector<FindClusters> finders_of(const std::vector<Rung>& rungs) {
   std::vector<FindClusters> finders;
+  finders.reserve(rungs.size());
   for (const Rung& rung : rungs) finders.push_back(finder_of_rung(rung));
   return finders;
 }

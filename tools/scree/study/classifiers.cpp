@@ -47,6 +47,7 @@ struct Parts {
 std::vector<Parts> gather(const std::vector<Way>& ways, const StudyTask& task) {
   std::vector<Detector> detectors = detectors_of(ways, task);
   std::vector<FindClusters> finders;
+  finders.reserve(detectors.size());
   for (Detector& detector : detectors) finders.push_back(finder_of(detector));
   const auto part = [&](const TerrainSettings& settings, std::size_t points, const SeedRange& seeds,
                         const std::string& what) {
