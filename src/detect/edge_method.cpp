@@ -69,7 +69,7 @@ ClusteredPoints EdgeMethod::find(const PointCloud& points, StageCounts& counts, 
   timer.done(Stage::clusters);
   measure_clusters(edges);
   timer.done(Stage::features);
-  return {edges, clusters_};
+  return result();
 }
 
 void EdgeMethod::select_edges(StageCounts& counts) {

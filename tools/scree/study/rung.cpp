@@ -73,12 +73,10 @@ void SurfaceRung::gather_candidates() {
 void SurfaceRung::cluster() {
   const EdgeSettings& edges = settings_.edges;
   const auto tolerance = static_cast<float>(edges.cluster_tolerance);
-  // Steep points do not float alone.
-  const float isolation = chosen_ == Candidates::steep ? 0 : kIsolationReach * tolerance;
-  if (isolation > 0) {
-    remove_isolated_points(candidates_, isolation, euclidean_, kept_);
-  } else {
+  if (chosen_ == Candidates::steep) {  // steep points do not float alone
     std::swap(candidates_, kept_);
+  } else {
+    remove_isolated_points(candidates_, kIsolationReach * tolerance, euclidean_, kept_);
   }
   const auto gap = static_cast<float>(2 * (edges.voxel_size + edges.seed_distance)) + tolerance;
   split_.clear();
