@@ -83,12 +83,13 @@ const ObstacleList& Pipeline::process(const Sweep& sweep) {
 void Pipeline::detect_in_map() {
   const RollingMap& map = mapper_->map();
   map_detector_.detect(map.cloud(), map.beams(), found_, timer_);
-  for (Obstacle& obstacle : found_) obstacle.center += map.origin();
+  const Pose cloud_in_map{map.origin(), Eigen::Quaterniond::Identity()};
+  for (Obstacle& obstacle : found_) move_into_parent(cloud_in_map, obstacle);
   tracker_.update(
       list_.stamp_ns, mapper_->pose().translation, {found_.data(), found_.size()},
       [&map](const Eigen::Vector3d& place) { return map.occupancy_at(place); }, list_.obstacles);
   list_.pose = mapper_->to_odom() * mapper_->pose();
-  for (Obstacle& obstacle : list_.obstacles) obstacle.center = mapper_->to_odom() * obstacle.center;
+  for (Obstacle& obstacle : list_.obstacles) move_into_parent(mapper_->to_odom(), obstacle);
   timer_.done(Stage::tracking);
 }
 

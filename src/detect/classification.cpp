@@ -16,6 +16,7 @@ Obstacle obstacle_of(const Cluster& cluster, const Prediction& prediction, float
   obstacle.yaw = cluster.box.yaw;
   obstacle.height = height;
   obstacle.points = cluster.end - cluster.begin;
+  obstacle.evidence = obstacle.kind == ObstacleKind::negative ? Evidence::inside : Evidence::none;
   return obstacle;
 }
 

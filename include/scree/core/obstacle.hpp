@@ -1,8 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
+#include "scree/core/convex_polygon.hpp"
 #include "scree/core/fixed_vector.hpp"
 #include "scree/core/pose.hpp"
 
@@ -12,6 +15,23 @@ enum class ObstacleKind : std::uint8_t { positive, negative };
 
 constexpr const char* name(ObstacleKind kind) {
   return kind == ObstacleKind::positive ? "positive" : "negative";
+}
+
+/// What says that there is a negative obstacle, or an edge.
+enum class Evidence : std::uint8_t {
+  none,    ///< of a positive obstacle that is no edge: it was seen itself
+  inside,  ///< beams went into it
+  wall,    ///< only its far wall was seen
+  edge,    ///< the ground ends or steps
+  shadow   ///< nothing came back where ground was due
+};
+
+/// By Evidence.
+inline constexpr std::array<const char*, 5> kEvidenceNames = {"none", "inside", "wall", "edge",
+                                                              "shadow"};
+
+constexpr const char* name(Evidence evidence) {
+  return kEvidenceNames[static_cast<std::size_t>(evidence)];
 }
 
 /// Something that a wheel must not meet: a rock (positive) or a hole (negative).
@@ -24,7 +44,19 @@ struct Obstacle {
   double yaw = 0;     ///< of the box's length about z, radians, in (-pi/2, pi/2]
   double height = 0;  ///< above the surrounding ground; below zero: depth, metres
   std::uint32_t points = 0;
+  Evidence evidence = Evidence::none;
+  ConvexPolygon footprint;  ///< around its points, seen from above; empty: the box stands for it
 };
+
+/// Brings an obstacle from a child frame into its parent, its footprint at the height of its
+/// centre. @pre the frames have the same yaw and lean little against each other
+inline void move_into_parent(const Pose& child, Obstacle& obstacle) {
+  const double z = obstacle.center.z();
+  for (Eigen::Vector2d& corner : obstacle.footprint) {
+    corner = (child * Eigen::Vector3d(corner.x(), corner.y(), z)).head<2>();
+  }
+  obstacle.center = child * obstacle.center;
+}
 
 /// What was found in one cloud, and where the robot was.
 struct ObstacleList {
