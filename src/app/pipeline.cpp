@@ -82,7 +82,7 @@ const ObstacleList& Pipeline::process(const Sweep& sweep) {
 
 void Pipeline::detect_in_map() {
   const RollingMap& map = mapper_->map();
-  map_detector_.detect(map.cloud(), map.beams(), found_, timer_);
+  map_detector_.detect(map.seen_cloud(), found_, timer_);
   const Pose cloud_in_map{map.origin(), Eigen::Quaterniond::Identity()};
   for (Obstacle& obstacle : found_) move_into_parent(cloud_in_map, obstacle);
   tracker_.update(
@@ -96,7 +96,9 @@ void Pipeline::detect_in_map() {
 void Pipeline::detect_in_sweep(const Sweep& sweep) {
   deskew(sweep, lidar_, still_, sweep_);
   timer_.done(Stage::motion);
-  sweep_detector_.detect(sweep_.points, {}, found_, timer_);
+  sweep_detector_.detect(
+      {.points = sweep_.points, .beams = {}, .origins = sweep_.origins, .passing = {}}, found_,
+      timer_);
   sweep_tracker_.update(
       list_.stamp_ns, Eigen::Vector3d::Zero(), {found_.data(), found_.size()},
       [](const Eigen::Vector3d&) { return Occupancy::unknown; }, list_.obstacles);

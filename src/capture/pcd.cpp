@@ -89,10 +89,10 @@ Result<std::string> read_file(const std::filesystem::path& file) {
   return std::move(text).str();
 }
 
-Result<PointCloud> read_points(const std::string& bytes) {
+Result<PcdCloud> read_points(const std::string& bytes) {
   const auto header = parse_pcd_header(bytes);
   if (!header) return tl::make_unexpected(header.error());
-  PointCloud cloud(header->points);
+  PcdCloud cloud{PointCloud(header->points), header->viewpoint};
   cloud.resize(header->points);
   if (header->points == 0) return cloud;
 
@@ -129,12 +129,11 @@ Result<PointCloud> read_points(const std::string& bytes) {
 
 }  // namespace
 
-Result<PointCloud> read_pcd(const std::filesystem::path& file) {
+Result<PcdCloud> read_pcd(const std::filesystem::path& file) {
   std::string reason;
   try {
     const auto bytes = read_file(file);
-    auto cloud =
-        bytes ? read_points(*bytes) : Result<PointCloud>(tl::make_unexpected(bytes.error()));
+    auto cloud = bytes ? read_points(*bytes) : Result<PcdCloud>(tl::make_unexpected(bytes.error()));
     if (cloud) return cloud;
     reason = cloud.error().message;
   } catch (const std::exception& error) {

@@ -129,6 +129,25 @@ Result<std::vector<PcdField>> read_fields(const Lines& lines) {
   return fields;
 }
 
+/// Seven numbers, of which the first three are the place.
+Result<Eigen::Vector3f> read_viewpoint(const Lines& lines) {
+  const auto found = lines.values.find("VIEWPOINT");
+  if (found == lines.values.end()) return Eigen::Vector3f::Zero();
+  const Words& words = found->second;
+  Eigen::Vector3f place = Eigen::Vector3f::Zero();
+  for (std::size_t i = 0; i < words.size() && i < 3; ++i) {
+    const char* const end = words[i].data() + words[i].size();
+    const auto parsed = std::from_chars(words[i].data(), end, place[static_cast<int>(i)]);
+    if (parsed.ec != std::errc() || parsed.ptr != end) {
+      return fail("has a bad VIEWPOINT line in its header");
+    }
+  }
+  if (words.size() != 7 || !place.allFinite()) {
+    return fail("has a bad VIEWPOINT line in its header");
+  }
+  return place;
+}
+
 std::string bytes_missing(std::size_t needed, std::size_t there) {
   return fmt::format("is cut: {} bytes of points, of which {} are there", needed, there);
 }
@@ -194,7 +213,11 @@ Result<PcdHeader> parse_pcd_header(std::string_view file) {
   const auto height = single_number(*lines, "HEIGHT", 0);
   if (!height) return tl::make_unexpected(height.error());
 
+  const auto viewpoint = read_viewpoint(*lines);
+  if (!viewpoint) return tl::make_unexpected(viewpoint.error());
+
   PcdHeader header;
+  header.viewpoint = *viewpoint;
   header.fields = std::move(*fields);
   header.point_size =
       header.fields.back().offset + header.fields.back().size * header.fields.back().count;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -30,6 +31,7 @@ struct PcdHeader {
   std::size_t points = 0;
   std::size_t point_size = 0;  ///< bytes of one point
   PcdData data = PcdData::ascii;
+  Eigen::Vector3f viewpoint = Eigen::Vector3f::Zero();  ///< metres
   std::size_t body = 0;  ///< where the data begins in the file
 
   /// The first field of one of these names, whatever their case.

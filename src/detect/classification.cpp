@@ -16,7 +16,7 @@ Obstacle obstacle_of(const Cluster& cluster, const Prediction& prediction, float
   obstacle.yaw = cluster.box.yaw;
   obstacle.height = height;
   obstacle.points = cluster.end - cluster.begin;
-  obstacle.evidence = obstacle.kind == ObstacleKind::negative ? Evidence::inside : Evidence::none;
+  obstacle.evidence = cluster.evidence;
   return obstacle;
 }
 
@@ -31,6 +31,7 @@ void classify(std::span<const Cluster> clusters, const Network& network, double 
     const bool is_positive = prediction.kind() == ObstacleKind::positive;
     const float height = cluster.features[is_positive ? max_height : min_height];
     if (is_positive ? height <= 0 : height >= 0) continue;
+    if (!is_positive && cluster.evidence == Evidence::none) continue;
     ++counts.obstacles;
     Obstacle obstacle = obstacle_of(cluster, prediction, height);
     obstacle.id = static_cast<std::int64_t>(obstacles.size()) + 1;

@@ -34,12 +34,11 @@ float Detector::common_reach() const {
   return reach;
 }
 
-void Detector::detect(PointView cloud, std::span<const BeamCount> beams,
-                      FixedVector<Obstacle>& obstacles, StageTimer& timer) {
-  counts_ = {.input = cloud.size()};
-  take_in(cloud);
+void Detector::detect(const SeenCloud& cloud, FixedVector<Obstacle>& obstacles, StageTimer& timer) {
+  counts_ = {.input = cloud.points.size()};
+  take_in(cloud.points);
   timer.done(Stage::voxel_grid);
-  const ClusteredPoints found = find_clusters(cloud, beams, timer);
+  const ClusteredPoints found = find_clusters(cloud, timer);
   classify(found.clusters.all(), network_, min_confidence_, obstacles, counts_);
   timer.done(Stage::network);
 }
@@ -54,10 +53,9 @@ void Detector::take_in(PointView cloud) {
   counts_.below_clearance = points_.size();
 }
 
-ClusteredPoints Detector::find_clusters(PointView cloud, std::span<const BeamCount> beams,
-                                        StageTimer& timer) {
+ClusteredPoints Detector::find_clusters(const SeenCloud& cloud, StageTimer& timer) {
   if (auto* edges = std::get_if<EdgeMethod>(&method_)) return edges->find(points_, counts_, timer);
-  return std::get<SurfaceMethod>(method_).find(points_, cloud, beams, counts_, timer);
+  return std::get<SurfaceMethod>(method_).find(points_, cloud, counts_, timer);
 }
 
 }  // namespace scree

@@ -118,6 +118,7 @@ void EdgeMethod::measure_clusters(CandidatePoints& edges) {
   for (Cluster& cluster : clusters_.all()) {
     const auto members = clusters_.members(cluster);
     const float middle = (cluster.lowest + cluster.highest) / 2;
+    cluster.evidence = Evidence::inside;
     cluster.ground = ground_.around(cluster.box, sloped_.cells, is_edge_, middle);
     for (const std::uint32_t i : members) edges.height[i] = edges.points.z[i] - cluster.ground;
     cluster.features = measure(edges, members);

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "scree/detect/label.hpp"
 #include "scree/detect/neighbours.hpp"
 #include "scree/detect/quantile.hpp"
+#include "scree/detect/union_find.hpp"
 
 namespace scree {
 namespace {
@@ -25,6 +27,7 @@ GroundSurface::GroundSurface(std::size_t max_points, std::size_t max_cells)
       patch_(max_cells),
       queue_(max_cells),
       patches_(max_cells),
+      windows_(max_cells),
       trend_(max_cells),
       fill_(max_cells) {}
 
@@ -51,8 +54,10 @@ void GroundSurface::build_below(std::span<const std::uint8_t> loose,
 
 void GroundSurface::find_ground(const GroundSurfaceSettings& settings) {
   find_smooth_cells(settings.max_slope);
-  find_patches(settings.max_slope);
   const bool has_trend = settings.trend_reach > 0;
+  if (!has_trend) add_planar_cells(settings.max_slope);
+  find_patches(settings.max_slope);
+  if (!has_trend) join_windows();
   if (has_trend) {
     trend_.fit(columns_, rows_, ground_.data(), seen_.data(), cell_, settings.trend_reach);
     add_trend(-1, {&seen_});
@@ -142,6 +147,52 @@ void GroundSurface::find_smooth_cells(float max_slope) {
       // False where a neighbour is not known.
       ground_[cell] = rise_x * rise_x + rise_y * rise_y <= limit * limit ? 1 : 0;
     }
+  }
+}
+
+/// Makes smooth what lies on the plane of a window: cells without neighbours, whose slope cannot be
+/// told, and those on a wide bank.
+void GroundSurface::add_planar_cells(float max_slope) {
+  windows_.find(columns_, rows_, seen_.data(), cell_, max_slope);
+  const float limit = 2 * cell_ * max_slope;
+  for_each_planar_cell([&](const PlanarWindow& window, std::size_t cell) {
+    if (ground_[cell] != 0) return;
+    const float rise_x = rise(cell, 1, columns_), rise_y = rise(cell, columns_, 1);
+    // False where a neighbour is not known.
+    const bool is_steep =
+        std::hypot(rise_x - 2 * window.rise_x, rise_y - 2 * window.rise_y) > limit;
+    if (!is_steep) ground_[cell] = 1;
+  });
+}
+
+/// Makes one patch of those that lie on the plane of one window.
+void GroundSurface::join_windows() {
+  queue_.clear();  // by patch: the one that it was joined to
+  for (std::uint32_t i = 0; i < patches_.size(); ++i) queue_.push_back(i);
+  const PlanarWindow* last = nullptr;
+  std::uint32_t root = 0;
+  for_each_planar_cell([&](const PlanarWindow& window, std::size_t cell) {
+    if (patch_[cell] == kNoLabel) return;
+    const std::uint32_t other = root_of(queue_, patch_[cell]);
+    if (&window != std::exchange(last, &window)) {
+      root = other;
+    } else if (other != root) {
+      queue_[other] = root;
+      patches_[root].cells += std::exchange(patches_[other].cells, 0);
+    }
+  });
+  for (std::uint32_t& patch : patch_) {
+    if (patch != kNoLabel) patch = root_of(queue_, patch);
+  }
+}
+
+/// Calls visit(window, cell) for the cells that lie on a window's plane.
+template <class Visit>
+void GroundSurface::for_each_planar_cell(const Visit& visit) const {
+  for (const PlanarWindow& window : windows_.all()) {
+    windows_.for_each_cell(window, columns_, seen_.data(), [&](std::size_t cell, float off) {
+      if (std::abs(off) <= PlanarWindows::kThickness) visit(window, cell);
+    });
   }
 }
 

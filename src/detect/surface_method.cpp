@@ -35,7 +35,8 @@ SurfaceMethod::SurfaceMethod(const SurfaceSettings& settings, double clearance,
       kept_(limits.candidates),
       euclidean_(limits.candidates),
       clusters_(limits.candidates),
-      context_(limits.ground_cells) {
+      context_(limits.ground_cells),
+      evidence_(limits.ground_cells) {
   if (settings.clustering == SurfaceClustering::regions) {
     regions_.emplace(limits.candidates, limits.ground_cells);
   } else {
@@ -49,11 +50,10 @@ float SurfaceMethod::reach() const {
                   reach_of_cells(EuclideanClusters::cell_size(tolerance), max_candidates_, 3));
 }
 
-ClusteredPoints SurfaceMethod::find(const PointCloud& points, PointView cloud,
-                                    std::span<const BeamCount> beams, StageCounts& counts,
-                                    StageTimer& timer) {
+ClusteredPoints SurfaceMethod::find(const PointCloud& points, const SeenCloud& cloud,
+                                    StageCounts& counts, StageTimer& timer) {
   sloped_.cells.build(points, gradient_.reach());
-  build_ground(cloud, beams);
+  build_ground(cloud);
   mark_points_off_ground();
   timer.done(Stage::surface);
   sloped_.compute(gradient_, is_off_ground_);
@@ -70,16 +70,17 @@ ClusteredPoints SurfaceMethod::find(const PointCloud& points, PointView cloud,
   return result();
 }
 
-void SurfaceMethod::build_ground(PointView cloud, std::span<const BeamCount> beams) {
+void SurfaceMethod::build_ground(const SeenCloud& cloud) {
   const GroundSurfaceSettings ground = ground_surface_of(settings_);
   const auto lowest = static_cast<float>(settings_.body_height);
   surface_.build(sloped_.points(), ground);
-  beam_grid_.build(cloud, beams, surface_, lowest, highest_);
+  beam_grid_.build(cloud.points, cloud.beams, surface_, lowest, highest_);
   if (beam_grid_.has_loose()) {
     surface_.build_below(beam_grid_.loose(), ground);
-    beam_grid_.build(cloud, beams, surface_, lowest, highest_);
+    beam_grid_.build(cloud.points, cloud.beams, surface_, lowest, highest_);
   }
-  if (!beams.empty()) leave_out_ground_below_edges();
+  evidence_.build(cloud, surface_);
+  if (!cloud.beams.empty()) leave_out_ground_below_edges();
 }
 
 /// A rock that is narrower at the ground than above is no less steep for the ground seen below it.
@@ -137,12 +138,18 @@ void SurfaceMethod::cluster(StageCounts& counts) {
 }
 
 void SurfaceMethod::measure_clusters(const PointCloud& points) {
+  // Points below ground that is itself seen are reflections.
+  constexpr float kMostBelowGround = 0.5F;
   context_.build(points, kept_, surface_);
   for (Cluster& cluster : clusters_.all()) {
     const auto members = clusters_.members(cluster);
     cluster.ground = surface_.height(cluster.box.center_x, cluster.box.center_y);
     cluster.features = measure(kept_, members);
     context_.measure(cluster, members, kept_, surface_, beam_grid_);
+    const bool is_below = cluster.features[max_height] < 0;
+    if (is_below && cluster.features[through_share] < kMostBelowGround) {
+      cluster.evidence = evidence_.of(members, kept_, surface_);
+    }
   }
 }
 

@@ -23,12 +23,14 @@ RollingMap::RollingMap(const MapSettings& settings, std::size_t max_voxels)
       inverse_(static_cast<float>(1 / settings.voxel)),
       voxels_(max_voxels),
       cloud_(voxels_.capacity()),
-      beams_(voxels_.capacity()) {}
+      beams_(voxels_.capacity()),
+      origins_(voxels_.capacity()) {}
 
 void RollingMap::clear() {
   voxels_.clear();
   cloud_.clear();
   beams_.clear();
+  origins_.clear();
   free_space_.clear();
 }
 
@@ -62,7 +64,10 @@ void RollingMap::recenter(const Pose& pose) {
   const Eigen::Vector3d origin = (pose.translation / step).array().round() * step;
   const Eigen::Vector3d shift = origin - origin_;
   origin_ = origin;
-  for (MapVoxel& voxel : voxels_) voxel.mean -= shift.cast<float>();
+  for (MapVoxel& voxel : voxels_) {
+    voxel.mean -= shift.cast<float>();
+    voxel.seen_from -= shift.cast<float>();
+  }
   const auto voxels = [&](double metres) {
     return static_cast<int>(std::lround(metres / settings_.voxel));
   };
@@ -97,6 +102,7 @@ void RollingMap::add_points(const DeskewedSweep& sweep, const Eigen::Matrix3f& r
     }
     if (in_base.squaredNorm() <= search_reach * search_reach) free_space_.add_hit(point + origin);
     add_hit(*voxel, point, sweep, i);
+    voxel->seen_from = rotation * sweep.origins[i] + translation;
   }
 }
 
@@ -201,12 +207,14 @@ void RollingMap::prune(const Pose& pose) {
 void RollingMap::extract_cloud(const Eigen::Vector3f& robot) {
   cloud_.clear();
   beams_.clear();
+  origins_.clear();
   const auto reach = static_cast<float>(settings_.search_reach);
   for (MapVoxel& voxel : voxels_) {
     const bool is_far = (voxel.mean - robot).squaredNorm() > reach * reach;
     if (is_far || is_dust(voxel) || !confirm(voxel)) continue;
     cloud_.push_back(voxel.mean.x(), voxel.mean.y(), voxel.mean.z(), voxel.reflectivity);
     beams_.push_back(voxel.beams);
+    origins_.push_back(voxel.seen_from);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 
+#include "scree/core/obstacle.hpp"
 #include "scree/detect/candidate_points.hpp"
 #include "scree/detect/features.hpp"
 #include "scree/detect/oriented_box.hpp"
@@ -17,6 +18,7 @@ struct Cluster {
   float lowest = 0, highest = 0;     ///< z of its points, metres
   float ground = 0;                  ///< z of the ground around it, metres
   Features features{};
+  Evidence evidence = Evidence::none;  ///< that it is a hole
 };
 
 /// The clusters of one cloud with their points.

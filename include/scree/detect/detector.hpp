@@ -1,11 +1,11 @@
 #pragma once
 
-#include <span>
 #include <utility>
 #include <variant>
 
 #include "scree/config/settings.hpp"
 #include "scree/core/obstacle.hpp"
+#include "scree/core/seen_cloud.hpp"
 #include "scree/core/stage_times.hpp"
 #include "scree/detect/edge_method.hpp"
 #include "scree/detect/network.hpp"
@@ -25,13 +25,11 @@ public:
 
   /// Finds obstacles in a cloud in a gravity-aligned frame (z up) and writes them, numbered from 1,
   /// in that frame.
-  /// @param beams that came to each point of the cloud; empty where nothing is known of them
   /// @param timer started; takes the time of each stage
-  void detect(PointView cloud, std::span<const BeamCount> beams, FixedVector<Obstacle>& obstacles,
-              StageTimer& timer);
+  void detect(const SeenCloud& cloud, FixedVector<Obstacle>& obstacles, StageTimer& timer);
   void detect(PointView cloud, FixedVector<Obstacle>& obstacles) {
     StageTimer none;
-    detect(cloud, {}, obstacles, none);
+    detect({.points = cloud, .beams = {}, .origins = {}, .passing = {}}, obstacles, none);
   }
 
   // Of the last call.
@@ -55,8 +53,7 @@ private:
   static AnyMethod make_method(const DetectSettings& settings, const DetectorLimits& limits);
   float common_reach() const;
   void take_in(PointView cloud);
-  ClusteredPoints find_clusters(PointView cloud, std::span<const BeamCount> beams,
-                                StageTimer& timer);
+  ClusteredPoints find_clusters(const SeenCloud& cloud, StageTimer& timer);
 
   float leaf_size_, clearance_;  // metres; 0: without
   double min_confidence_;

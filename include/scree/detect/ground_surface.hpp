@@ -9,6 +9,7 @@
 #include "scree/core/fixed_vector.hpp"
 #include "scree/core/point_cloud.hpp"
 #include "scree/detect/ground_trend.hpp"
+#include "scree/detect/planar_windows.hpp"
 #include "scree/detect/raster_fill.hpp"
 
 namespace scree {
@@ -66,7 +67,11 @@ private:
   /// Finds the ground and lays the surface through it, from the heights of the cells.
   void find_ground(const GroundSurfaceSettings& settings);
   void find_smooth_cells(float max_slope);
+  void add_planar_cells(float max_slope);
   void find_patches(float max_slope);
+  void join_windows();
+  template <class Visit>
+  void for_each_planar_cell(const Visit& visit) const;
   void add_trend(float sign, std::initializer_list<FixedVector<float>*> rasters) const;
   void join_trend(float tolerance);
   void join_patches(float tolerance);
@@ -89,6 +94,7 @@ private:
     bool is_ground = false;
   };
   FixedVector<Patch> patches_;
+  PlanarWindows windows_;
   GroundTrend trend_;
   RasterFill fill_;
 };

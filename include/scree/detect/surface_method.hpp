@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "scree/config/settings.hpp"
-#include "scree/core/beam_count.hpp"
+#include "scree/core/seen_cloud.hpp"
 #include "scree/core/stage_times.hpp"
 #include "scree/detect/beam_grid.hpp"
 #include "scree/detect/body_regions.hpp"
@@ -13,6 +13,7 @@
 #include "scree/detect/clusters.hpp"
 #include "scree/detect/euclidean_clusters.hpp"
 #include "scree/detect/ground_surface.hpp"
+#include "scree/detect/hole_evidence.hpp"
 #include "scree/detect/sloped_cloud.hpp"
 #include "scree/detect/stage_counts.hpp"
 
@@ -31,10 +32,9 @@ public:
   float reach() const;
 
   /// @param points thinned; finite, within reach(), no more of them than the limits say
-  /// @param cloud that they come from, with the beams that came to each of its points; no beams
-  /// where nothing is known of them
-  ClusteredPoints find(const PointCloud& points, PointView cloud, std::span<const BeamCount> beams,
-                       StageCounts& counts, StageTimer& timer);
+  /// @param cloud that they come from
+  ClusteredPoints find(const PointCloud& points, const SeenCloud& cloud, StageCounts& counts,
+                       StageTimer& timer);
 
   // What each stage of the last call gave.
   const SlopedCloud& sloped() const { return sloped_; }
@@ -42,7 +42,7 @@ public:
   ClusteredPoints result() const { return {kept_, clusters_}; }
 
 private:
-  void build_ground(PointView cloud, std::span<const BeamCount> beams);
+  void build_ground(const SeenCloud& cloud);
   void leave_out_ground_below_edges();
   void mark_points_off_ground();
   void gather_candidates(StageCounts& counts);
@@ -65,6 +65,7 @@ private:
   std::optional<BodyRegions> regions_;
   Clusters clusters_;
   ClusterContext context_;
+  HoleEvidence evidence_;
 };
 
 }  // namespace scree

@@ -12,6 +12,7 @@
 #include "scree/core/occupancy.hpp"
 #include "scree/core/point_cloud.hpp"
 #include "scree/core/pose.hpp"
+#include "scree/core/seen_cloud.hpp"
 #include "scree/motion/deskew.hpp"
 #include "scree/terrain/free_space.hpp"
 #include "scree/terrain/voxel_hash_map.hpp"
@@ -39,6 +40,8 @@ public:
   const PointCloud& cloud() const { return cloud_; }
   /// For each of these points, the beams that came to its voxel.
   std::span<const BeamCount> beams() const { return beams_; }
+  /// The cloud with all that is known of its beams, in the cloud's frame.
+  SeenCloud seen_cloud() const { return {cloud_, beams_, origins_, {}}; }
   const Eigen::Vector3d& origin() const { return origin_; }
   /// What is known of a point in the map's frame, to the accuracy of FreeSpace's coarse cells.
   Occupancy occupancy_at(const Eigen::Vector3d& point) const;
@@ -71,6 +74,7 @@ private:
   FreeSpace free_space_;
   PointCloud cloud_;
   FixedVector<BeamCount> beams_;
+  FixedVector<Eigen::Vector3f> origins_;  // of the beam that hit each last
   std::uint32_t sweep_ = 0;  // number of the last sweep, from 1 on
   std::int64_t end_ns_ = 0, decayed_ns_ = 0;
   std::uint64_t dropped_ = 0;

@@ -34,6 +34,7 @@ struct MapVoxel {
   std::int64_t seen_ns = 0;                        ///< end of that sweep
   std::uint32_t slot = 0;                          ///< kept by VoxelHashMap
   Eigen::Vector3f mean = Eigen::Vector3f::Zero();  ///< of its points, the map's frame - origin
+  Eigen::Vector3f seen_from = Eigen::Vector3f::Zero();  ///< at the last hit, the same frame
   float reflectivity = 0;
   bool is_confirmed = false;  ///< what the last look at its neighbourhood found
 

@@ -73,7 +73,10 @@ void detect_in_cloud(const DetectOptions& options) {
 
   ListWriter writer(options.out);
   ObstacleList list(static_cast<std::size_t>(memory.obstacles));
-  detector->detect(*cloud, list.obstacles);
+  StageTimer none;
+  detector->detect(
+      {.points = *cloud, .beams = {}, .origins = {&cloud->viewpoint, 1}, .passing = {}},
+      list.obstacles, none);
   writer.write(list);
   writer.finish();
   warn_of_losses(detector->counts(), options.input.string());

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+
+#include "scree/core/beam_count.hpp"
+#include "scree/core/point_cloud.hpp"
+
+namespace scree {
+
+/// A beam that ended beyond the cloud, or nowhere.
+struct PassingBeam {
+  Eigen::Vector3f origin;     ///< metres
+  Eigen::Vector3f direction;  ///< of length 1
+};
+
+/// A cloud with what is known of the beams that saw it, in the cloud's frame. A span is empty where
+/// nothing is known.
+struct SeenCloud {
+  PointView points;
+  std::span<const BeamCount> beams;          ///< what came to each point
+  std::span<const Eigen::Vector3f> origins;  ///< where each point was seen from; or one for all
+  std::span<const PassingBeam> passing;
+
+  /// @pre origins are known
+  const Eigen::Vector3f& origin_of(std::size_t point) const {
+    return origins[origins.size() == 1 ? 0 : point];
+  }
+};
+
+}  // namespace scree

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "scree/core/obstacle.hpp"
+#include "scree/core/seen_cloud.hpp"
+#include "scree/detect/candidate_points.hpp"
+#include "scree/detect/ground_surface.hpp"
+
+namespace scree {
+
+/// Tells holes from points that only lie below what was taken for the ground. A hole is what light
+/// went into: the beams that reached its points passed the level of its rim where no ground was
+/// seen, and ground is known on enough of the rim. Points behind a wall, below the top of a bush,
+/// or below ground that was itself seen are none.
+class HoleEvidence {
+public:
+  explicit HoleEvidence(std::size_t max_cells);
+
+  /// Follows the beams that went below the surface.
+  void build(const SeenCloud& cloud, const GroundSurface& surface);
+
+  /// Whether beams went below the level of the ground in a cell, and no ground was seen there.
+  bool is_void(std::size_t cell) const { return passed_below_[cell] > 0; }
+
+  /// What says that a cluster of points below the surface is a hole; none: nothing does.
+  /// @param members of the cluster among the points
+  Evidence of(std::span<const std::uint32_t> members, const CandidatePoints& points,
+              const GroundSurface& surface);
+
+private:
+  void follow(const Eigen::Vector3f& origin, const Eigen::Vector3f& end,
+              const GroundSurface& surface);
+  void collect_cells(std::span<const std::uint32_t> members, const CandidatePoints& points,
+                     const GroundSurface& surface);
+  float rim_share(const GroundSurface& surface) const;
+
+  bool knows_beams_ = false;
+  FixedVector<float> into_, through_ground_;     // beams that ended below the ground, by cell
+  FixedVector<std::uint16_t> passed_below_;      // beams
+  FixedVector<std::uint32_t> cells_, taken_by_;  // of the cluster, and the void beside it
+  std::size_t seen_cells_ = 0;                   // the first of them: those with members
+  std::uint32_t number_ = 0;
+};
+
+}  // namespace scree

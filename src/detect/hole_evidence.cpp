@@ -1,0 +1,131 @@
+#include "scree/detect/hole_evidence.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scree/detect/neighbours.hpp"
+
+namespace scree {
+namespace {
+
+constexpr float kBelow = 0.06F;  // metres: what lies deeper is below the ground
+
+}  // namespace
+
+HoleEvidence::HoleEvidence(std::size_t max_cells)
+    : into_(max_cells),
+      through_ground_(max_cells),
+      passed_below_(max_cells),
+      cells_(max_cells),
+      taken_by_(max_cells) {}
+
+void HoleEvidence::build(const SeenCloud& cloud, const GroundSurface& surface) {
+  const std::size_t cells = surface.columns() * surface.rows();
+  into_.assign(cells, 0);
+  through_ground_.assign(cells, 0);
+  passed_below_.assign(cells, 0);
+  taken_by_.assign(cells, 0);
+  number_ = 0;
+  knows_beams_ = !cloud.origins.empty();
+  if (!knows_beams_) return;
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    const Eigen::Vector3f point(cloud.points.x[i], cloud.points.y[i], cloud.points.z[i]);
+    if (!point.allFinite() || point.z() > surface.height(point.x(), point.y()) - kBelow) continue;
+    follow(cloud.origin_of(i), point, surface);
+  }
+}
+
+/// Follows a beam back from a point below the surface to where it passed that level.
+void HoleEvidence::follow(const Eigen::Vector3f& origin, const Eigen::Vector3f& end,
+                          const GroundSurface& surface) {
+  constexpr float kClear = 0.1F;         // metres below seen ground at which a beam cannot be
+  constexpr float kMostThrough = 0.25F;  // share of the way: rims are rounded
+  const float step = surface.cell_size();
+  const Eigen::Vector3f back = origin - end;
+  const auto steps = static_cast<int>(back.head<2>().norm() / step);
+  const Eigen::Vector3f stride = back / static_cast<float>(std::max(steps, 1));
+  int below = 0, through = 0;
+  Eigen::Vector3f at = end;
+  for (int i = 0; i < steps; ++i, at += stride) {
+    const float depth = surface.height(at.x(), at.y()) - at.z();
+    if (depth <= 0) break;
+    ++below;
+    if (depth > kClear && surface.is_ground(surface.cell_at(at.x(), at.y()))) ++through;
+  }
+  const bool is_clean = static_cast<float>(through) <= kMostThrough * static_cast<float>(below);
+  const std::size_t cell = surface.cell_at(end.x(), end.y());
+  (is_clean ? into_ : through_ground_)[cell] += 1;
+  if (!is_clean) return;
+  at = end;
+  for (int i = 0; i < below; ++i, at += stride) {
+    const std::size_t passed = surface.cell_at(at.x(), at.y());
+    if (!surface.is_ground(passed) && passed_below_[passed] < UINT16_MAX) ++passed_below_[passed];
+  }
+}
+
+Evidence HoleEvidence::of(std::span<const std::uint32_t> members, const CandidatePoints& points,
+                          const GroundSurface& surface) {
+  constexpr float kMostThrough = 0.3F, kRim = 0.5F, kInside = 0.3F;
+  collect_cells(members, points, surface);
+  float into = 0, through = 0;
+  for (std::size_t i = 0; i < seen_cells_; ++i) {
+    into += into_[cells_[i]];
+    through += through_ground_[cells_[i]];
+  }
+  const float rim = rim_share(surface);
+  if (knows_beams_ && through > kMostThrough * (into + through)) return Evidence::none;
+  if (rim < kRim) return Evidence::none;
+  return static_cast<float>(seen_cells_) >= kInside * static_cast<float>(cells_.size())
+             ? Evidence::inside
+             : Evidence::wall;
+}
+
+/// Collects the cells of the members, and the void that they hang together with.
+void HoleEvidence::collect_cells(std::span<const std::uint32_t> members,
+                                 const CandidatePoints& points, const GroundSurface& surface) {
+  ++number_;
+  cells_.clear();
+  const auto take = [&](std::size_t cell) {
+    if (taken_by_[cell] == number_) return;
+    taken_by_[cell] = number_;
+    cells_.push_back(static_cast<std::uint32_t>(cell));
+  };
+  for (const std::uint32_t i : members) {
+    take(surface.cell_at(points.points.x[i], points.points.y[i]));
+  }
+  seen_cells_ = cells_.size();
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    for (const std::size_t near : neighbours(cells_[i], surface.columns())) {
+      if (is_void(near)) take(near);
+    }
+  }
+}
+
+/// The share of the cells at the rim with ground near them.
+float HoleEvidence::rim_share(const GroundSurface& surface) const {
+  constexpr float kNear = 0.35F;  // metres
+  const std::size_t columns = surface.columns(), rows = surface.rows();
+  const auto reach = static_cast<std::size_t>(std::lround(kNear / surface.cell_size()));
+  const auto has_ground_near = [&](std::size_t cell) {
+    const std::size_t column = cell % columns, row = cell / columns;
+    for (std::size_t v = row - std::min(row, reach); v <= std::min(row + reach, rows - 1); ++v) {
+      for (std::size_t u = column - std::min(column, reach);
+           u <= std::min(column + reach, columns - 1); ++u) {
+        if (surface.is_ground(v * columns + u)) return true;
+      }
+    }
+    return false;
+  };
+  float rim = 0, ground = 0;
+  for (const std::uint32_t cell : cells_) {
+    const auto around = neighbours(cell, columns);
+    const bool is_inner =
+        std::ranges::all_of(around, [&](std::size_t near) { return taken_by_[near] == number_; });
+    if (is_inner) continue;
+    ++rim;
+    if (has_ground_near(cell)) ++ground;
+  }
+  return ground / std::max(rim, 1.0F);
+}
+
+}  // namespace scree
