@@ -22,10 +22,10 @@ Obstacle obstacle_of(const Cluster& cluster, const Prediction& prediction, float
 
 }  // namespace
 
-void classify(std::span<const Cluster> clusters, const Network& network, double min_confidence,
-              FixedVector<Obstacle>& obstacles, StageCounts& counts) {
+void classify(const ClusteredPoints& found, const Network& network, double min_confidence,
+              EnclosingPolygons& polygons, FixedVector<Obstacle>& obstacles, StageCounts& counts) {
   obstacles.clear();
-  for (const Cluster& cluster : clusters) {
+  for (const Cluster& cluster : found.clusters.all()) {
     const Prediction prediction = network(cluster.features);
     if (prediction.confidence() < static_cast<float>(min_confidence)) continue;
     const bool is_positive = prediction.kind() == ObstacleKind::positive;
@@ -35,6 +35,7 @@ void classify(std::span<const Cluster> clusters, const Network& network, double 
     ++counts.obstacles;
     Obstacle obstacle = obstacle_of(cluster, prediction, height);
     obstacle.id = static_cast<std::int64_t>(obstacles.size()) + 1;
+    obstacle.footprint = polygons.around(found.points.points, found.clusters.members(cluster));
     if (!obstacles.push_back(obstacle)) ++counts.obstacles_dropped;
   }
 }

@@ -16,6 +16,7 @@ Detector::Detector(const DetectSettings& settings, const DetectorLimits& limits,
       overhangs_(clearance_ > 0 ? limits.points : 0),
       points_(limits.points),
       method_(make_method(settings, limits)),
+      polygons_(limits.candidates),
       limit_(common_reach()) {}
 
 Detector::AnyMethod Detector::make_method(const DetectSettings& settings,
@@ -39,7 +40,7 @@ void Detector::detect(const SeenCloud& cloud, FixedVector<Obstacle>& obstacles, 
   take_in(cloud.points);
   timer.done(Stage::voxel_grid);
   const ClusteredPoints found = find_clusters(cloud, timer);
-  classify(found.clusters.all(), network_, min_confidence_, obstacles, counts_);
+  classify(found, network_, min_confidence_, polygons_, obstacles, counts_);
   timer.done(Stage::network);
 }
 

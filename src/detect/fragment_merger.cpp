@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "scree/detect/enclosing_polygon.hpp"
 #include "scree/detect/obstacle_box.hpp"
 
 namespace scree {
@@ -42,6 +43,7 @@ void extend(Obstacle& whole, const Obstacle& fragment) {
   }
   if (std::abs(fragment.height) > std::abs(whole.height)) whole.height = fragment.height;
   whole.points += fragment.points;
+  whole.footprint = enclosing_polygon(whole.footprint, fragment.footprint);
   whole.id = std::min(whole.id, fragment.id);
 }
 

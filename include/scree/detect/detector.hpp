@@ -8,6 +8,7 @@
 #include "scree/core/seen_cloud.hpp"
 #include "scree/core/stage_times.hpp"
 #include "scree/detect/edge_method.hpp"
+#include "scree/detect/enclosing_polygon.hpp"
 #include "scree/detect/network.hpp"
 #include "scree/detect/overhangs.hpp"
 #include "scree/detect/stage_counts.hpp"
@@ -62,6 +63,7 @@ private:
   Overhangs overhangs_;
   PointCloud points_;
   AnyMethod method_;
+  EnclosingPolygons polygons_;
   float limit_;  // metres from the origin within which every stage's cells can be told apart
   StageCounts counts_;
 };

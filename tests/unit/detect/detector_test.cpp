@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "allocation_counter.hpp"
@@ -86,9 +87,34 @@ TEST_P(EachMethod, FindsTheBumpAndTheBowl) {
     EXPECT_EQ(obstacle.height > 0, is_bump);
     EXPECT_GT(obstacle.confidence, 0.5);
     EXPECT_GT(obstacle.points, 20U);
+    EXPECT_EQ(obstacle.evidence, is_bump ? Evidence::none : Evidence::inside);
   }
   EXPECT_EQ(found.obstacles[0].id, 1);
   EXPECT_EQ(found.obstacles[1].id, 2);
+}
+
+TEST_P(EachMethod, AFootprintHoldsThePointsOfItsCluster) {
+  const PointCloud cloud = test::bump_and_bowl(50'000);
+  FixedVector<Obstacle> obstacles(16);
+  Detector detector(settings_for_test(), kLimits, by_angles());
+  detector.detect(cloud, obstacles);
+  const auto [points, clusters] = detector.clustered();
+  for (const Obstacle& obstacle : obstacles) {
+    const auto cluster = std::ranges::find_if(clusters.all(), [&](const Cluster& each) {
+      return each.box.center_x == static_cast<float>(obstacle.center.x());
+    });
+    ASSERT_NE(cluster, clusters.all().end());
+    std::size_t inside = 0;
+    for (const std::uint32_t i : clusters.members(*cluster)) {
+      // A hair towards the middle: points of the hull lie on the boundary.
+      const Eigen::Vector2d place(points.points.x[i], points.points.y[i]);
+      if (obstacle.footprint.contains(place + 1e-6 * (obstacle.center.head<2>() - place))) ++inside;
+    }
+    EXPECT_EQ(inside, obstacle.points);
+    const Eigen::Vector2d beyond(obstacle.center.x() + 0.55 * obstacle.extent.x(),
+                                 obstacle.center.y() + 0.55 * obstacle.extent.y());
+    EXPECT_FALSE(obstacle.footprint.contains(beyond));
+  }
 }
 
 TEST(EdgeMethod, FindsThemWithoutEachOfTheStagesThatCanBeLeftOut) {
@@ -124,6 +150,7 @@ TEST_P(EachMethod, TwiceTheSameAndNothingAllocatedTheSecondTime) {
       EXPECT_EQ(first[i].center, second[i].center);
       EXPECT_EQ(first[i].confidence, second[i].confidence);
       EXPECT_EQ(first[i].points, second[i].points);
+      EXPECT_TRUE(std::ranges::equal(first[i].footprint, second[i].footprint));
     }
   }
 }

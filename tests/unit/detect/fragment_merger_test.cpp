@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "detect/boxes.hpp"
+#include "scree/detect/enclosing_polygon.hpp"
 #include "scree/detect/obstacle_box.hpp"
 
 namespace scree {
@@ -73,6 +74,23 @@ TEST(FragmentMerger, ASliverBesideARockBelongsToIt) {
   EXPECT_NEAR(list[0].center.x(), 3.35, 1e-9);
   EXPECT_NEAR(list[0].extent.y(), 0.8, 1e-9);
   EXPECT_NEAR(list[0].extent.z(), 0.4, 1e-9);
+}
+
+ConvexPolygon footprint_of(const Obstacle& obstacle) {
+  std::vector<Eigen::Vector2d> corners;
+  for (const Eigen::Vector3d& corner : outline(obstacle)) corners.push_back(corner.head<2>());
+  return enclosing_polygon(corners);
+}
+
+TEST(FragmentMerger, TheFootprintHoldsThoseOfAllFragments) {
+  Obstacle rock = box(5, 0, 1, 1, 100), sliver = box(5.75, 0, 0.1, 0.1, 10);
+  rock.footprint = footprint_of(rock);
+  sliver.footprint = footprint_of(sliver);
+  const FixedVector<Obstacle> list = merged({rock, sliver});
+  ASSERT_EQ(list.size(), 1U);
+  EXPECT_TRUE(list[0].footprint.contains({4.51, 0.49}));
+  EXPECT_TRUE(list[0].footprint.contains({5.79, 0.01}));
+  EXPECT_FALSE(list[0].footprint.contains({5.79, 0.3}));
 }
 
 TEST(FragmentMerger, RocksBesideOneAnotherStayTwo) {

@@ -107,8 +107,9 @@ struct Outcome {
     const std::clock_t begin = std::clock();
     const ClusteredPoints found = find(world.cloud);
     ObstacleList list(static_cast<std::size_t>(MemorySettings().obstacles));
+    EnclosingPolygons polygons(found.points.size());
     StageCounts unused;
-    classify(found.clusters.all(), network, min_confidence, list.obstacles, unused);
+    classify(found, network, min_confidence, polygons, list.obstacles, unused);
     milliseconds.push_back(1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
     scorer.add(world.truth, {&list, 1});
     pairs.add(world, compare(world.truth, world.truth.visible[0], list));
