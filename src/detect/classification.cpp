@@ -1,6 +1,9 @@
 #include "scree/detect/classification.hpp"
 
 #include <algorithm>
+#include <cmath>
+
+#include "scree/detect/obstacle_box.hpp"
 
 namespace scree {
 namespace {
@@ -20,6 +23,30 @@ Obstacle obstacle_of(const Cluster& cluster, const Prediction& prediction, float
   return obstacle;
 }
 
+/// The longer an edge is, the less can it be anything else.
+float confidence_of(const GroundEdge& edge) {
+  constexpr float kLeast = 0.5F, kSure = 2;  // metres of length that leave no doubt
+  return kLeast + (1 - kLeast) * std::min(edge.box.length / kSure, 1.0F);
+}
+
+Obstacle obstacle_of(const GroundEdge& edge) {
+  Obstacle obstacle;
+  obstacle.kind = edge.step > 0 ? ObstacleKind::positive : ObstacleKind::negative;
+  obstacle.confidence = confidence_of(edge);
+  obstacle.center = {edge.box.center_x, edge.box.center_y, edge.ground + edge.step / 2};
+  obstacle.extent = {edge.box.length, edge.box.width, std::abs(edge.step)};
+  obstacle.yaw = edge.box.yaw;
+  obstacle.height = edge.step;
+  obstacle.points = edge.end - edge.begin;
+  obstacle.evidence = edge.evidence;
+  return obstacle;
+}
+
+bool is_part_of(const Obstacle& edge, const Obstacle& other) {
+  constexpr double kNear = 0.3;  // metres
+  return distance_to_box(other, edge.center) <= kNear || distance_to_box(edge, other.center) <= 0;
+}
+
 }  // namespace
 
 void classify(const ClusteredPoints& found, const Network& network, double min_confidence,
@@ -36,6 +63,20 @@ void classify(const ClusteredPoints& found, const Network& network, double min_c
     Obstacle obstacle = obstacle_of(cluster, prediction, height);
     obstacle.id = static_cast<std::int64_t>(obstacles.size()) + 1;
     obstacle.footprint = polygons.around(found.points.points, found.clusters.members(cluster));
+    if (!obstacles.push_back(obstacle)) ++counts.obstacles_dropped;
+  }
+}
+
+void add_edges(const GroundEdges& edges, EnclosingPolygons& polygons,
+               FixedVector<Obstacle>& obstacles, StageCounts& counts) {
+  const std::size_t before = obstacles.size();
+  for (const GroundEdge& edge : edges.all()) {
+    Obstacle obstacle = obstacle_of(edge);
+    const auto has_part = [&](const Obstacle& other) { return is_part_of(obstacle, other); };
+    if (std::any_of(obstacles.begin(), obstacles.begin() + before, has_part)) continue;
+    ++counts.obstacles;
+    obstacle.id = static_cast<std::int64_t>(obstacles.size()) + 1;
+    obstacle.footprint = polygons.around(edges.places(), edge.begin, edge.end);
     if (!obstacles.push_back(obstacle)) ++counts.obstacles_dropped;
   }
 }

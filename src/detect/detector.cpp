@@ -16,7 +16,7 @@ Detector::Detector(const DetectSettings& settings, const DetectorLimits& limits,
       overhangs_(clearance_ > 0 ? limits.points : 0),
       points_(limits.points),
       method_(make_method(settings, limits)),
-      polygons_(limits.candidates),
+      polygons_(std::max(limits.candidates, limits.ground_cells)),
       limit_(common_reach()) {}
 
 Detector::AnyMethod Detector::make_method(const DetectSettings& settings,
@@ -41,6 +41,9 @@ void Detector::detect(const SeenCloud& cloud, FixedVector<Obstacle>& obstacles, 
   timer.done(Stage::voxel_grid);
   const ClusteredPoints found = find_clusters(cloud, timer);
   classify(found, network_, min_confidence_, polygons_, obstacles, counts_);
+  if (const auto* surface = std::get_if<SurfaceMethod>(&method_)) {
+    add_edges(surface->edges(), polygons_, obstacles, counts_);
+  }
   timer.done(Stage::network);
 }
 

@@ -147,4 +147,10 @@ ConvexPolygon EnclosingPolygons::around(PointView points, std::span<const std::u
   return enclosing_polygon(places_);
 }
 
+ConvexPolygon EnclosingPolygons::around(PointView points, std::uint32_t begin, std::uint32_t end) {
+  places_.clear();
+  for (std::uint32_t i = begin; i < end; ++i) places_.push_back({points.x[i], points.y[i]});
+  return enclosing_polygon(places_);
+}
+
 }  // namespace scree

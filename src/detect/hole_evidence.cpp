@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "scree/detect/neighbours.hpp"
 
@@ -15,7 +16,8 @@ constexpr float kBelow = 0.06F;  // metres: what lies deeper is below the ground
 HoleEvidence::HoleEvidence(std::size_t max_cells)
     : into_(max_cells),
       through_ground_(max_cells),
-      passed_below_(max_cells),
+      beams_below_(max_cells),
+      lowest_beam_(max_cells),
       cells_(max_cells),
       taken_by_(max_cells) {}
 
@@ -23,7 +25,8 @@ void HoleEvidence::build(const SeenCloud& cloud, const GroundSurface& surface) {
   const std::size_t cells = surface.columns() * surface.rows();
   into_.assign(cells, 0);
   through_ground_.assign(cells, 0);
-  passed_below_.assign(cells, 0);
+  beams_below_.assign(cells, 0);
+  lowest_beam_.assign(cells, std::numeric_limits<float>::infinity());
   taken_by_.assign(cells, 0);
   number_ = 0;
   knows_beams_ = !cloud.origins.empty();
@@ -32,6 +35,21 @@ void HoleEvidence::build(const SeenCloud& cloud, const GroundSurface& surface) {
     const Eigen::Vector3f point(cloud.points.x[i], cloud.points.y[i], cloud.points.z[i]);
     if (!point.allFinite() || point.z() > surface.height(point.x(), point.y()) - kBelow) continue;
     follow(cloud.origin_of(i), point, surface);
+  }
+  for (const PassingBeam& beam : cloud.passing) follow_passing(beam, surface);
+}
+
+/// Follows a beam down to the surface, and a way on below it.
+void HoleEvidence::follow_passing(const PassingBeam& beam, const GroundSurface& surface) {
+  constexpr float kFarthest = 15, kBelowFor = 4;  // metres
+  const Eigen::Vector3f stride = surface.cell_size() * beam.direction;
+  const auto steps = static_cast<int>(kFarthest / surface.cell_size());
+  Eigen::Vector3f at = beam.origin;
+  for (int i = 0; i < steps; ++i, at += stride) {
+    if (!surface.covers(at.x(), at.y())) return;
+    if (at.z() > surface.height(at.x(), at.y())) continue;
+    follow(beam.origin, at + kBelowFor * beam.direction, surface);
+    return;
   }
 }
 
@@ -59,7 +77,9 @@ void HoleEvidence::follow(const Eigen::Vector3f& origin, const Eigen::Vector3f& 
   at = end;
   for (int i = 0; i < below; ++i, at += stride) {
     const std::size_t passed = surface.cell_at(at.x(), at.y());
-    if (!surface.is_ground(passed) && passed_below_[passed] < UINT16_MAX) ++passed_below_[passed];
+    if (surface.is_ground(passed)) continue;
+    if (beams_below_[passed] < UINT16_MAX) ++beams_below_[passed];
+    lowest_beam_[passed] = std::min(lowest_beam_[passed], at.z());
   }
 }
 

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::string_view kFormat = "scree_network";
 constexpr int kVersion = 1;
-constexpr double kInputLimit = 100;
+constexpr double kInputLimit = 5;
 constexpr std::array<std::string_view, 4> kFormNames = {"raw", "log1p", "root", "logit"};
 
 double sigmoid(double x) noexcept {

@@ -36,7 +36,8 @@ SurfaceMethod::SurfaceMethod(const SurfaceSettings& settings, double clearance,
       euclidean_(limits.candidates),
       clusters_(limits.candidates),
       context_(limits.ground_cells),
-      evidence_(limits.ground_cells) {
+      evidence_(limits.ground_cells),
+      edges_(limits.ground_cells) {
   if (settings.clustering == SurfaceClustering::regions) {
     regions_.emplace(limits.candidates, limits.ground_cells);
   } else {
@@ -80,6 +81,7 @@ void SurfaceMethod::build_ground(const SeenCloud& cloud) {
     beam_grid_.build(cloud.points, cloud.beams, surface_, lowest, highest_);
   }
   evidence_.build(cloud, surface_);
+  edges_.find(surface_, evidence_);
   if (!cloud.beams.empty()) leave_out_ground_below_edges();
 }
 

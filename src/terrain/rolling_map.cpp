@@ -15,6 +15,8 @@ constexpr std::uint16_t kMaxMisses = 8;
 constexpr std::uint16_t kRayStride = 4;
 /// The mean of a voxel follows its points; beyond so many each new one counts as much.
 constexpr std::uint16_t kMaxHits = 40;
+/// Beams that are remembered for having passed everything: those of about a second.
+constexpr std::size_t kPassingBeams = 16384;
 
 }  // namespace
 
@@ -23,6 +25,7 @@ RollingMap::RollingMap(const MapSettings& settings, std::size_t max_voxels)
       inverse_(static_cast<float>(1 / settings.voxel)),
       voxels_(max_voxels),
       cloud_(voxels_.capacity()),
+      passing_(kPassingBeams),
       beams_(voxels_.capacity()),
       origins_(voxels_.capacity()) {}
 
@@ -31,6 +34,8 @@ void RollingMap::clear() {
   cloud_.clear();
   beams_.clear();
   origins_.clear();
+  passing_.clear();
+  next_passing_ = 0;
   free_space_.clear();
 }
 
@@ -51,6 +56,7 @@ void RollingMap::add(const DeskewedSweep& sweep, const Pose& pose, std::int64_t 
   const auto reach = static_cast<float>(std::min(settings_.reach, reach_of_sweep));
   add_points(sweep, rotation, translation, reach);
   trace_rays(sweep, rotation, translation, reach);
+  add_passing_beams(sweep, rotation, translation);
   prune(pose);
   extract_cloud(translation);
 }
@@ -68,6 +74,7 @@ void RollingMap::recenter(const Pose& pose) {
     voxel.mean -= shift.cast<float>();
     voxel.seen_from -= shift.cast<float>();
   }
+  for (PassingBeam& beam : passing_) beam.origin -= shift.cast<float>();
   const auto voxels = [&](double metres) {
     return static_cast<int>(std::lround(metres / settings_.voxel));
   };
@@ -169,6 +176,35 @@ void RollingMap::trace_ray(const Eigen::Vector3f& from, const Eigen::Vector3f& b
     const float distance = aside.norm();
     if (distance < grass_radius && aside.z() > 0) voxel->beams.passed += 2 * kRayStride;
     if (distance < miss_radius && way < end && voxel->last_sweep != sweep_) ++voxel->misses;
+  }
+}
+
+/// Remembers beams that would have met level ground within reach, and met something farther off or
+/// nothing at all.
+void RollingMap::add_passing_beams(const DeskewedSweep& sweep, const Eigen::Matrix3f& rotation,
+                                   const Eigen::Vector3f& translation) {
+  const auto reach = static_cast<float>(settings_.search_reach);
+  for (std::size_t i = sweep_ % kRayStride; i < sweep.points.size(); i += kRayStride) {
+    const Eigen::Vector3f hit(sweep.points.x[i], sweep.points.y[i], sweep.points.z[i]);
+    if (hit.squaredNorm() < reach * reach) continue;
+    add_passing_beam(rotation * sweep.origins[i] + translation,
+                     rotation * (hit - sweep.origins[i]));
+  }
+  for (std::size_t i = sweep_ % kRayStride; i < sweep.empty.size(); i += kRayStride) {
+    const EmptyBeam& empty = sweep.empty[i];
+    add_passing_beam(rotation * empty.origin + translation, rotation * (empty.end - empty.origin));
+  }
+}
+
+void RollingMap::add_passing_beam(const Eigen::Vector3f& origin, const Eigen::Vector3f& beam) {
+  constexpr float kLeastSlope = 0.08F;  // downwards: level ground comes within 12 m of most robots
+  const PassingBeam passing{origin, beam.normalized()};
+  if (passing.direction.z() > -kLeastSlope) return;
+  if (passing_.size() < passing_.capacity()) {
+    passing_.push_back(passing);
+  } else {
+    passing_[next_passing_] = passing;
+    next_passing_ = (next_passing_ + 1) % passing_.capacity();
   }
 }
 

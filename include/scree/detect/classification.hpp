@@ -3,6 +3,7 @@
 #include "scree/core/obstacle.hpp"
 #include "scree/detect/clusters.hpp"
 #include "scree/detect/enclosing_polygon.hpp"
+#include "scree/detect/ground_edges.hpp"
 #include "scree/detect/network.hpp"
 #include "scree/detect/stage_counts.hpp"
 
@@ -14,5 +15,9 @@ namespace scree {
 /// @param polygons make the footprints
 void classify(const ClusteredPoints& found, const Network& network, double min_confidence,
               EnclosingPolygons& polygons, FixedVector<Obstacle>& obstacles, StageCounts& counts);
+
+/// Adds the edges that are no part of an obstacle that is there already.
+void add_edges(const GroundEdges& edges, EnclosingPolygons& polygons,
+               FixedVector<Obstacle>& obstacles, StageCounts& counts);
 
 }  // namespace scree

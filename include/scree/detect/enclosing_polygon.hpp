@@ -27,6 +27,8 @@ public:
 
   /// @pre no more than max_points indices
   ConvexPolygon around(PointView points, std::span<const std::uint32_t> indices);
+  /// The same around the points from `begin` on, before `end`.
+  ConvexPolygon around(PointView points, std::uint32_t begin, std::uint32_t end);
 
 private:
   FixedVector<Eigen::Vector2d> places_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -9,6 +10,7 @@
 #include "scree/core/fixed_vector.hpp"
 #include "scree/core/point_cloud.hpp"
 #include "scree/detect/ground_trend.hpp"
+#include "scree/detect/label.hpp"
 #include "scree/detect/planar_windows.hpp"
 #include "scree/detect/raster_fill.hpp"
 
@@ -47,11 +49,32 @@ public:
   bool is_ground(std::size_t cell) const { return ground_[cell] != 0; }
   /// Distance of the height that was seen in a cell from the surface, metres. @pre is_ground(cell)
   float roughness(std::size_t cell) const { return std::abs(seen_[cell] - smooth_[cell]); }
+  /// Median height of the points in a cell, metres; NaN: not seen.
+  float seen(std::size_t cell) const { return seen_[cell]; }
+  /// z of the highest point in a cell, metres. @pre it has points
+  float top(std::size_t cell) const {
+    return *std::max_element(z_.begin() + begin_[cell], z_.begin() + begin_[cell + 1]);
+  }
+  /// Area of the smooth patch that a cell belongs to, square metres; 0: to none.
+  float patch_area(std::size_t cell) const {
+    return patch_[cell] == kNoLabel
+               ? 0
+               : static_cast<float>(patches_[patch_[cell]].cells) * cell_ * cell_;
+  }
   std::size_t columns() const { return columns_; }
   std::size_t rows() const { return rows_; }
   float cell_size() const { return cell_; }
   std::size_t cell_at(float x, float y) const;
+  bool covers(float x, float y) const {
+    return column_of(x) >= 0 && column_of(x) < static_cast<float>(columns_) && row_of(y) >= 0 &&
+           row_of(y) < static_cast<float>(rows_);
+  }
   /// Place on the raster in cells, from its edge; at least 2 cells lie beyond every point.
+  /// Middle of a column or a row, metres.
+  float x_of(std::size_t column) const {
+    return low_x_ + (static_cast<float>(column) + 0.5F) * cell_;
+  }
+  float y_of(std::size_t row) const { return low_y_ + (static_cast<float>(row) + 0.5F) * cell_; }
   float column_of(float x) const { return (x - low_x_) * inverse_; }
   float row_of(float y) const { return (y - low_y_) * inverse_; }
   /// Number of points in a cell; 0: not seen.

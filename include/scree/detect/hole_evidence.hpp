@@ -23,7 +23,10 @@ public:
   void build(const SeenCloud& cloud, const GroundSurface& surface);
 
   /// Whether beams went below the level of the ground in a cell, and no ground was seen there.
-  bool is_void(std::size_t cell) const { return passed_below_[cell] > 0; }
+  bool is_void(std::size_t cell) const { return beams_below_[cell] > 0; }
+  /// How many these were, and z of the lowest of them, metres.
+  std::uint16_t beams_below(std::size_t cell) const { return beams_below_[cell]; }
+  float lowest_beam(std::size_t cell) const { return lowest_beam_[cell]; }
 
   /// What says that a cluster of points below the surface is a hole; none: nothing does.
   /// @param members of the cluster among the points
@@ -33,13 +36,15 @@ public:
 private:
   void follow(const Eigen::Vector3f& origin, const Eigen::Vector3f& end,
               const GroundSurface& surface);
+  void follow_passing(const PassingBeam& beam, const GroundSurface& surface);
   void collect_cells(std::span<const std::uint32_t> members, const CandidatePoints& points,
                      const GroundSurface& surface);
   float rim_share(const GroundSurface& surface) const;
 
   bool knows_beams_ = false;
-  FixedVector<float> into_, through_ground_;     // beams that ended below the ground, by cell
-  FixedVector<std::uint16_t> passed_below_;      // beams
+  FixedVector<float> into_, through_ground_;  // beams that ended below the ground, by cell
+  FixedVector<std::uint16_t> beams_below_;
+  FixedVector<float> lowest_beam_;
   FixedVector<std::uint32_t> cells_, taken_by_;  // of the cluster, and the void beside it
   std::size_t seen_cells_ = 0;                   // the first of them: those with members
   std::uint32_t number_ = 0;

@@ -12,6 +12,7 @@
 #include "scree/detect/cluster_context.hpp"
 #include "scree/detect/clusters.hpp"
 #include "scree/detect/euclidean_clusters.hpp"
+#include "scree/detect/ground_edges.hpp"
 #include "scree/detect/ground_surface.hpp"
 #include "scree/detect/hole_evidence.hpp"
 #include "scree/detect/sloped_cloud.hpp"
@@ -40,6 +41,8 @@ public:
   const SlopedCloud& sloped() const { return sloped_; }
   const CandidatePoints& candidates() const { return candidates_; }
   ClusteredPoints result() const { return {kept_, clusters_}; }
+  /// Where the ground ends or steps.
+  const GroundEdges& edges() const { return edges_; }
 
 private:
   void build_ground(const SeenCloud& cloud);
@@ -66,6 +69,7 @@ private:
   Clusters clusters_;
   ClusterContext context_;
   HoleEvidence evidence_;
+  GroundEdges edges_;
 };
 
 }  // namespace scree

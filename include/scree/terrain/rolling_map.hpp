@@ -41,7 +41,7 @@ public:
   /// For each of these points, the beams that came to its voxel.
   std::span<const BeamCount> beams() const { return beams_; }
   /// The cloud with all that is known of its beams, in the cloud's frame.
-  SeenCloud seen_cloud() const { return {cloud_, beams_, origins_, {}}; }
+  SeenCloud seen_cloud() const { return {cloud_, beams_, origins_, passing_}; }
   const Eigen::Vector3d& origin() const { return origin_; }
   /// What is known of a point in the map's frame, to the accuracy of FreeSpace's coarse cells.
   Occupancy occupancy_at(const Eigen::Vector3d& point) const;
@@ -61,6 +61,9 @@ private:
   void trace_rays(const DeskewedSweep& sweep, const Eigen::Matrix3f& rotation,
                   const Eigen::Vector3f& translation, float reach);
   void trace_ray(const Eigen::Vector3f& from, const Eigen::Vector3f& beam, float reach);
+  void add_passing_beams(const DeskewedSweep& sweep, const Eigen::Matrix3f& rotation,
+                         const Eigen::Vector3f& translation);
+  void add_passing_beam(const Eigen::Vector3f& origin, const Eigen::Vector3f& beam);
   void prune(const Pose& pose);
   bool confirm(MapVoxel& voxel) const;
   bool has_confirmation(const MapVoxel& voxel) const;
@@ -73,9 +76,11 @@ private:
   VoxelHashMap voxels_;
   FreeSpace free_space_;
   PointCloud cloud_;
+  FixedVector<PassingBeam> passing_;  // of the latest sweeps, in a ring
+  std::size_t next_passing_ = 0;
   FixedVector<BeamCount> beams_;
   FixedVector<Eigen::Vector3f> origins_;  // of the beam that hit each last
-  std::uint32_t sweep_ = 0;  // number of the last sweep, from 1 on
+  std::uint32_t sweep_ = 0;               // number of the last sweep, from 1 on
   std::int64_t end_ns_ = 0, decayed_ns_ = 0;
   std::uint64_t dropped_ = 0;
 };

@@ -30,10 +30,10 @@ struct MapVoxel {
   std::uint16_t sweeps = 0;         ///< that hit it, saturating
   std::uint16_t misses = 0;         ///< beams that went through it since the last hit
   BeamCount beams;
-  std::uint32_t last_sweep = 0;                    ///< number of the last sweep that hit it
-  std::int64_t seen_ns = 0;                        ///< end of that sweep
-  std::uint32_t slot = 0;                          ///< kept by VoxelHashMap
-  Eigen::Vector3f mean = Eigen::Vector3f::Zero();  ///< of its points, the map's frame - origin
+  std::uint32_t last_sweep = 0;                         ///< number of the last sweep that hit it
+  std::int64_t seen_ns = 0;                             ///< end of that sweep
+  std::uint32_t slot = 0;                               ///< kept by VoxelHashMap
+  Eigen::Vector3f mean = Eigen::Vector3f::Zero();       ///< of its points, the map's frame - origin
   Eigen::Vector3f seen_from = Eigen::Vector3f::Zero();  ///< at the last hit, the same frame
   float reflectivity = 0;
   bool is_confirmed = false;  ///< what the last look at its neighbourhood found

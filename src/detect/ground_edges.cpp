@@ -1,0 +1,302 @@
+#include "scree/detect/ground_edges.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "scree/detect/neighbours.hpp"
+#include "scree/detect/quantile.hpp"
+
+namespace scree {
+namespace {
+
+constexpr float kLeastStep = 0.15F;    // metres
+constexpr float kLeastSlope = 0.5F;    // of the way to the other level: 27 degrees
+constexpr float kFarthest = 1.5F;      // metres beyond the ground that are looked at
+constexpr float kStripWidth = 0.4F;    // metres beyond an edge that belong to it
+constexpr float kLeastLength = 0.5F;   // metres
+constexpr float kLeastWidth = 0.3F;    // of an edge's box, metres
+constexpr float kLeastTerrace = 1.5F;  // square metres of level ground above a step
+constexpr std::uint16_t kFewestBeams = 4;
+
+}  // namespace
+
+GroundEdges::GroundEdges(std::size_t max_cells)
+    : step_(max_cells),
+      ground_(max_cells),
+      is_seen_(max_cells),
+      cells_(max_cells),
+      is_taken_(max_cells),
+      order_(max_cells),
+      values_(max_cells),
+      places_(max_cells),
+      edges_(max_cells / 16 + 1) {}
+
+void GroundEdges::find(const GroundSurface& surface, const HoleEvidence& beams) {
+  surface_ = &surface;
+  beams_ = &beams;
+  const std::size_t columns = surface.columns(), cells = columns * surface.rows();
+  step_.assign(cells, 0);
+  ground_.assign(cells, 0);
+  is_seen_.assign(cells, 0);
+  is_taken_.assign(cells, 0);
+  for (std::size_t row = 1; row + 1 < surface.rows(); ++row) {
+    for (std::size_t column = 1; column + 1 < columns; ++column) {
+      const std::size_t cell = row * columns + column;
+      if (!surface.is_ground(cell) || surface.patch_area(cell) < kLeastTerrace) continue;
+      Plane plane;
+      bool is_fitted = false;
+      for (int along_y = -1; along_y <= 1; ++along_y) {
+        for (int along_x = -1; along_x <= 1; ++along_x) {
+          const std::size_t next = cell + static_cast<std::size_t>(along_x) +
+                                   static_cast<std::size_t>(along_y) * columns;
+          if (surface.is_ground(next)) continue;
+          if (!is_fitted && !(is_fitted = fit(cell, plane))) break;
+          const Beyond beyond = look(cell, along_x, along_y, plane);
+          if (beyond.step != 0) mark(cell, along_x, along_y, beyond, plane.height);
+        }
+      }
+    }
+  }
+  places_.clear();
+  cells_.clear();
+  edges_.clear();
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    if (step_[cell] == 0 || is_taken_[cell] != 0) continue;
+    const std::size_t begin = cells_.size();
+    collect(cell, step_[cell] > 0 ? 1 : -1);
+    add_edge(static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(cells_.size()), 0);
+  }
+}
+
+/// Lays a plane through the ground around a cell. False where too little of it is known.
+bool GroundEdges::fit(std::size_t cell, Plane& plane) const {
+  constexpr float kReach = 0.6F;  // metres
+  constexpr float kFewest = 8;
+  const auto reach = static_cast<std::ptrdiff_t>(kReach / surface_->cell_size());
+  const auto columns = static_cast<std::ptrdiff_t>(surface_->columns());
+  const auto row = static_cast<std::ptrdiff_t>(cell) / columns;
+  const auto column = static_cast<std::ptrdiff_t>(cell) % columns;
+  const auto last_row = static_cast<std::ptrdiff_t>(surface_->rows()) - 1 - row;
+  float count = 0, x = 0, y = 0, z = 0, xx = 0, xy = 0, yy = 0, xz = 0, yz = 0;
+  for (std::ptrdiff_t v = std::max(-reach, -row); v <= std::min(reach, last_row); ++v) {
+    for (std::ptrdiff_t u = std::max(-reach, -column); u <= std::min(reach, columns - 1 - column);
+         ++u) {
+      const std::size_t other = cell + static_cast<std::size_t>(v * columns + u);
+      if (!surface_->is_ground(other)) continue;
+      const auto px = static_cast<float>(u), py = static_cast<float>(v);
+      const float height = surface_->seen(other);
+      ++count;
+      x += px;
+      y += py;
+      z += height;
+      xx += px * px;
+      xy += px * py;
+      yy += py * py;
+      xz += px * height;
+      yz += py * height;
+    }
+  }
+  if (count < kFewest) return false;
+  // A ridge keeps the slope small across a single ring of the lidar, where nothing tells it.
+  const float ridge = 2 * count;
+  xx += ridge - x * x / count;
+  yy += ridge - y * y / count;
+  xy -= x * y / count;
+  xz -= x * z / count;
+  yz -= y * z / count;
+  const float determinant = xx * yy - xy * xy;
+  plane.rise_x = (xz * yy - yz * xy) / determinant;
+  plane.rise_y = (yz * xx - xz * xy) / determinant;
+  plane.height = (z - plane.rise_x * x - plane.rise_y * y) / count;
+  return true;
+}
+
+/// How many steps from a cell stay on the raster.
+int GroundEdges::steps_inside(std::size_t cell, int along_x, int along_y) const {
+  const auto left = [](std::size_t at, std::size_t count, int along) {
+    if (along == 0) return std::numeric_limits<int>::max();
+    return static_cast<int>(along > 0 ? count - 1 - at : at);
+  };
+  const std::size_t columns = surface_->columns();
+  return std::min(left(cell % columns, columns, along_x),
+                  left(cell / columns, surface_->rows(), along_y));
+}
+
+GroundEdges::Beyond GroundEdges::look(std::size_t cell, int along_x, int along_y,
+                                      const Plane& plane) const {
+  const float stride = surface_->cell_size() * (along_x != 0 && along_y != 0 ? 1.4142F : 1.0F);
+  const int steps =
+      std::min(static_cast<int>(kFarthest / stride), steps_inside(cell, along_x, along_y));
+  const auto offset =
+      static_cast<std::ptrdiff_t>(along_x) +
+      static_cast<std::ptrdiff_t>(along_y) * static_cast<std::ptrdiff_t>(surface_->columns());
+  const float rise =
+      plane.rise_x * static_cast<float>(along_x) + plane.rise_y * static_cast<float>(along_y);
+  Beyond unseen;
+  for (int i = 1; i <= steps; ++i) {
+    const std::size_t at = cell + static_cast<std::size_t>(offset * i);
+    const float way = static_cast<float>(i) * stride;
+    const float level = plane.height + rise * static_cast<float>(i);
+    if (surface_->points_in(at) == 0) {
+      if (beams_->beams_below(at) < kFewestBeams) continue;
+      const float depth = level - beams_->lowest_beam(at);
+      if (depth >= kLeastStep) unseen.step = std::min(unseen.step, -depth);
+      continue;
+    }
+    // Where ground is seen, what lies below it is a reflection.
+    const float top = surface_->top(at) - level;
+    const float step = top < 0 ? top : surface_->seen(at) - level;
+    if (std::abs(step) < kLeastStep) {
+      if (surface_->is_ground(at) || step > kClutter) return {};
+      continue;
+    }
+    const bool is_steep =
+        way <= kFarthestStep && std::abs(step) >= kLeastSlope * (way - stride / 2);
+    if (step > 0) {
+      if (!is_steep) return {};
+      if (surface_->patch_area(at) < kLeastTerrace) continue;
+      return {step, true};
+    }
+    if (is_steep || (unseen.step != 0 && goes_on_level(at, offset, rise, steps - i))) {
+      return {step, true};
+    }
+    return {};
+  }
+  return unseen;
+}
+
+/// Whether the ground goes on from a cell as it does before the edge: a hollow rises again.
+bool GroundEdges::goes_on_level(std::size_t cell, std::ptrdiff_t offset, float rise,
+                                int steps) const {
+  constexpr float kOff = 0.06F;  // metres
+  constexpr int kFewest = 4, kMost = 15;
+  const float height = surface_->seen(cell);
+  int seen = 0, level = 0;
+  for (int i = 1; i <= std::min(steps, kMost); ++i) {
+    const std::size_t at = cell + static_cast<std::size_t>(offset * i);
+    if (surface_->points_in(at) == 0) continue;
+    ++seen;
+    if (std::abs(surface_->seen(at) - height - rise * static_cast<float>(i)) < kOff) ++level;
+  }
+  return seen >= kFewest && level * 5 >= seen * 4;
+}
+
+/// Marks the cells beyond an edge.
+void GroundEdges::mark(std::size_t cell, int along_x, int along_y, const Beyond& beyond,
+                       float ground) {
+  const float stride = surface_->cell_size() * (along_x != 0 && along_y != 0 ? 1.4142F : 1.0F);
+  const auto offset =
+      static_cast<std::ptrdiff_t>(along_x) +
+      static_cast<std::ptrdiff_t>(along_y) * static_cast<std::ptrdiff_t>(surface_->columns());
+  const int wide =
+      std::min(static_cast<int>(kStripWidth / stride), steps_inside(cell, along_x, along_y));
+  for (int i = 1; i <= wide; ++i) {
+    const std::size_t at = cell + static_cast<std::size_t>(offset * i);
+    if (surface_->is_ground(at)) continue;
+    if (std::abs(beyond.step) > std::abs(step_[at])) step_[at] = beyond.step;
+    ground_[at] = ground;
+    if (beyond.is_seen) is_seen_[at] = 1;
+  }
+}
+
+/// Collects the marked cells of one sign that hang together, small gaps bridged.
+void GroundEdges::collect(std::size_t start, std::int8_t sign) {
+  constexpr float kGap = 0.4F;  // metres
+  const auto reach = static_cast<std::ptrdiff_t>(std::lround(kGap / surface_->cell_size()));
+  const auto columns = static_cast<std::ptrdiff_t>(surface_->columns());
+  const auto rows = static_cast<std::ptrdiff_t>(surface_->rows());
+  std::size_t next = cells_.size();
+  is_taken_[start] = 1;
+  cells_.push_back(static_cast<std::uint32_t>(start));
+  for (; next < cells_.size(); ++next) {
+    const auto column = static_cast<std::ptrdiff_t>(cells_[next]) % columns;
+    const auto row = static_cast<std::ptrdiff_t>(cells_[next]) / columns;
+    for (std::ptrdiff_t v = std::max<std::ptrdiff_t>(row - reach, 0);
+         v <= std::min(row + reach, rows - 1); ++v) {
+      for (std::ptrdiff_t u = std::max<std::ptrdiff_t>(column - reach, 0);
+           u <= std::min(column + reach, columns - 1); ++u) {
+        const auto cell = static_cast<std::size_t>(v * columns + u);
+        if (is_taken_[cell] != 0 || step_[cell] * static_cast<float>(sign) <= 0) continue;
+        is_taken_[cell] = 1;
+        cells_.push_back(static_cast<std::uint32_t>(cell));
+      }
+    }
+  }
+}
+
+/// Makes one edge of cells, or two where a box would hold much of the ground: in the corner of a
+/// bent one.
+void GroundEdges::add_edge(std::uint32_t begin, std::uint32_t end, int depth) {
+  constexpr float kMostGround = 0.3F;
+  constexpr int kMostSplits = 5;
+  const std::size_t columns = surface_->columns();
+  const std::size_t first = places_.size();
+  for (std::uint32_t i = begin; i < end; ++i) {
+    places_.push_back(surface_->x_of(cells_[i] % columns), surface_->y_of(cells_[i] / columns),
+                      ground_[cells_[i]], 0);
+  }
+  order_.resize(places_.size() - first);
+  std::iota(order_.begin(), order_.end(), static_cast<std::uint32_t>(first));
+  GroundEdge edge;
+  edge.box = smallest_box(places_, {order_.data(), order_.size()});
+  if (edge.box.length < kLeastLength) {
+    places_.resize(first);
+    return;
+  }
+  if (depth < kMostSplits && edge.box.width > 2 * kStripWidth &&
+      ground_share(edge.box) > kMostGround) {
+    places_.resize(first);
+    const float c = std::cos(edge.box.yaw), s = std::sin(edge.box.yaw);
+    const auto middle =
+        std::partition(cells_.begin() + begin, cells_.begin() + end, [&](std::uint32_t cell) {
+          return (surface_->x_of(cell % columns) - edge.box.center_x) * c +
+                     (surface_->y_of(cell / columns) - edge.box.center_y) * s <
+                 0;
+        });
+    const auto half = static_cast<std::uint32_t>(middle - cells_.begin());
+    if (half > begin && half < end) {
+      add_edge(begin, half, depth + 1);
+      add_edge(half, end, depth + 1);
+    }
+    return;
+  }
+  std::size_t seen = 0;
+  values_.clear();
+  for (std::uint32_t i = begin; i < end; ++i) {
+    if (is_seen_[cells_[i]] != 0) {
+      ++seen;
+      values_.push_back(step_[cells_[i]]);
+    }
+  }
+  if (2 * seen < end - begin) {
+    edge.evidence = Evidence::shadow;
+    values_.clear();
+    for (std::uint32_t i = begin; i < end; ++i) values_.push_back(step_[cells_[i]]);
+  }
+  edge.step = quantile({values_.data(), values_.size()}, 0.5);
+  edge.ground = places_.z[first];
+  edge.box.width = std::max(edge.box.width, kLeastWidth);
+  edge.begin = static_cast<std::uint32_t>(first);
+  edge.end = static_cast<std::uint32_t>(places_.size());
+  if (!edges_.push_back(edge)) places_.resize(first);
+}
+
+/// Share of a box in which ground was seen.
+float GroundEdges::ground_share(const OrientedBox& box) const {
+  const float c = std::cos(box.yaw), s = std::sin(box.yaw), step = surface_->cell_size();
+  float all = 0, ground = 0;
+  for (float along = -box.length / 2; along <= box.length / 2; along += step) {
+    for (float across = -box.width / 2; across <= box.width / 2; across += step) {
+      ++all;
+      const std::size_t cell = surface_->cell_at(box.center_x + along * c - across * s,
+                                                 box.center_y + along * s + across * c);
+      if (surface_->is_ground(cell)) ++ground;
+    }
+  }
+  return ground / std::max(all, 1.0F);
+}
+
+}  // namespace scree
