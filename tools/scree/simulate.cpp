@@ -47,6 +47,16 @@ void add_gap(CLI::App& command, const char* name, const char* help, CLI::Option*
       ->check(CLI::Range(0.0, 3600.0));
 }
 
+/// The names of all scenes as a sentence lists them.
+std::string all_scenes() {
+  std::string names;
+  for (const Scene scene : kScenes) {
+    if (!names.empty()) names += scene == kScenes.back() ? " or " : ", ";
+    names += name_of(scene);
+  }
+  return names;
+}
+
 void run(const CLI::App& command, const SimulateOptions& options) {
   if (options.folder.empty() == options.cloud.empty()) {
     throw CLI::ValidationError("give either the folder of a capture or --cloud FILE.pcd");
@@ -135,8 +145,7 @@ void add_simulate(CLI::App& app) {
       ->capture_default_str();
   command
       ->add_option("--scene", options->scene,
-                   "easy, rolling, rough, crater, ditch, grass or mixed; "
-                   "without it a cloud is like the paper's")
+                   all_scenes() + "; without it a cloud is like the paper's")
       ->check([](const std::string& name) {
         return scene_named(name) ? std::string() : "there is no scene " + name;
       });

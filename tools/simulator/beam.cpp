@@ -50,9 +50,8 @@ bool Beam::add(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, 
     constexpr double kTelling = 0.05;
     const double relief = is_below ? 0 : terrain_.relief(hit.x(), hit.y());
     echo.relief = static_cast<float>(relief);
-    if (std::abs(relief) > kTelling) {
-      echo.feature = static_cast<std::uint8_t>(terrain_.feature_at(hit.x(), hit.y()));
-    }
+    const std::uint16_t part = terrain_.part_at(hit.x(), hit.y());
+    if (std::abs(relief) > kTelling || terrain_.is_of_edge(part)) echo.part = part;
   }
   // Against a threshold that a level, dark ground 30 m away hardly passes.
   constexpr double kThreshold = 0.0015;
@@ -79,7 +78,7 @@ void Beam::blend() {
       blended.reflectivity += part.light * part.reflectivity;
       if (part.light <= brightest) continue;
       brightest = part.light;
-      blended.feature = part.feature;
+      blended.part = part.part;
       blended.relief = part.relief;
     }
     if (blended.light <= 0) continue;

@@ -12,11 +12,12 @@ namespace scree {
 
 /// Light that comes back from one distance.
 struct Echo {
-  double range = 0;          ///< metres
-  double light = 0;          ///< received, against the receiver's threshold
-  double reflectivity = 0;   ///< 0..255
-  float relief = 0;          ///< what features add to the ground where it was hit, metres
-  std::uint8_t feature = 0;  ///< id of the feature hit more than 5 cm above or below ground
+  double range = 0;         ///< metres
+  double light = 0;         ///< received, against the receiver's threshold
+  double reflectivity = 0;  ///< 0..255
+  float relief = 0;         ///< what features add to the ground where it was hit, metres
+  std::uint16_t part = 0;   ///< of the feature hit more than 5 cm above or below ground, or of
+                            ///< the edge hit; 0 for none
 };
 
 /// A laser's beam, which is no line: 3.0 mrad wide and 1.5 mrad high (VLP-16, divergence). What it

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -66,12 +67,27 @@ private:
       const Eigen::Vector2d away(std::cos(angle), std::sin(angle));
       const bool chosen = random.chance(0.4);
       const double share = random.uniform(0.4, 1.2);
-      if (!chosen) continue;
+      if (!chosen || feature.is_edge) continue;
       if (feature.height > kTall) {
         hide_behind(feature, away, share * feature.height);
       } else if (feature.shape == ShapeKind::pit || feature.shape == ShapeKind::pothole) {
         hide_floor(feature, away);
       }
+    }
+    for (const TerrainEdge& edge : terrain_.edges()) hide_below(edge, random);
+  }
+
+  /// What a robot did not see that stayed on its side: the ground below an edge, all of it or as
+  /// far as the edge hides it.
+  void hide_below(const TerrainEdge& edge, Random& random) {
+    const bool chosen = random.chance(0.7);
+    const bool all = random.chance(0.3);
+    const double shadow = random.uniform(0.5, 3) * -edge.height();
+    if (!chosen || edge.height() > 0 || edge.is_ground()) return;
+    const double reach = all ? std::numeric_limits<double>::infinity() : shadow;
+    for (std::size_t cell = 0; cell < weight_.size(); ++cell) {
+      const double beyond = edge.beyond(middle_of(cell));
+      if (beyond > 0 && beyond < reach && edge.profile(beyond) < 0) weight_[cell] = 0;
     }
   }
 

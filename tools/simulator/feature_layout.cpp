@@ -133,7 +133,8 @@ private:
 /// What has been placed so far, and whether there is room for more.
 class Ground {
 public:
-  explicit Ground(const TerrainSettings& settings) : settings_(settings) {}
+  Ground(const TerrainSettings& settings, const IsTaken& is_taken)
+      : settings_(settings), is_taken_(is_taken) {}
 
   void place(std::vector<Group> groups, Random& random) {
     // Large ones first, while there is room for them.
@@ -190,6 +191,7 @@ private:
         shape.center.norm() < settings_.clear_radius + reach + settings_.gap) {
       return false;
     }
+    if (is_taken_ && is_taken_(shape.center, reach + settings_.gap)) return false;
     const double off = settings_.corridor_half_width + shape.shape.margin();
     for (const Eigen::Vector2d& by : settings_.corridor) {
       if (is_smooth(shape.shape.kind())) break;
@@ -207,6 +209,7 @@ private:
   }
 
   const TerrainSettings& settings_;
+  const IsTaken& is_taken_;
   std::vector<PlacedShape> placed_;
   std::vector<Footprint> footprints_;
 };
@@ -221,8 +224,9 @@ std::vector<Group> several(int count, Draw draw) {
 
 }  // namespace
 
-std::vector<PlacedShape> lay_out_features(const TerrainSettings& settings, std::uint64_t seed) {
-  Ground ground(settings);
+std::vector<PlacedShape> lay_out_features(const TerrainSettings& settings, std::uint64_t seed,
+                                          const IsTaken& is_taken) {
+  Ground ground(settings, is_taken);
   int rocks = settings.positive;
   int holes = settings.negative;
   int smooth = settings.smooth;

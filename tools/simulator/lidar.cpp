@@ -122,14 +122,14 @@ SimulatedShot SimulatedLidar::cast(std::size_t laser, std::int64_t t_ns) {
   const auto dimmer = [](const Echo& a, const Echo& b) { return a.light < b.light; };
   const Echo* strongest = std::max_element(echoes_.begin(), echoes_.end(), dimmer);
   const Echo* last = &echoes_[echoes_.size() - 1];
-  shot.feature = strongest->feature;
+  shot.part = strongest->part;
   shot.relief = strongest->relief;
   shot.last_range = measured(*last, laser);
   shot.last_reflectivity = measured_reflectivity(*last);
   if (settings_.mode == ReturnMode::last || echoes_.size() == 1) {
     shot.range = shot.last_range;
     shot.reflectivity = shot.last_reflectivity;
-    shot.feature = last->feature;
+    shot.part = last->part;
     shot.relief = last->relief;
     return shot;
   }

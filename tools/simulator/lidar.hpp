@@ -34,7 +34,7 @@ struct SimulatedShot {
   std::int64_t t_ns = 0;
   float range = 0;                ///< as measured, metres; 0: no return
   std::uint8_t reflectivity = 0;  ///< as measured, 0..255
-  std::uint8_t feature = 0;       ///< id of the feature hit more than 5 cm above or below ground
+  std::uint16_t part = 0;         ///< of the feature hit, see Echo
   float relief = 0;               ///< how far above or below, metres
   // With dual returns the last return; above stands the strongest or, where that is the last, the
   // second strongest. With one return they are equal.

@@ -112,7 +112,59 @@ constexpr std::array<Recipe, kScenes.size()> kRecipes = {{
      {0, 0.15},
      {0, 0.25},
      {3, 2, 2, 2, 2, 2, 3, 2, 2, 2, 3, 2, 1, 1}},
+    {"cliff",
+     {1, 10},
+     0.015,
+     {0, 0.02},
+     {0, 0.08},
+     {0.2, 0.6},
+     {0.2, 0.6},
+     {0, 0.4},
+     {0, 0.15},
+     {0, 0.1},
+     {0, 0.15},
+     {3, 2, 2, 2, 1, 2, 2, 2, 2, 2, 3, 1, 1, 1}},
+    {"kerb",
+     {0.2, 3},
+     0.005,
+     kNone,
+     kNone,
+     {0.2, 0.5},
+     {0, 0.1},
+     {0, 0.3},
+     {0, 0.1},
+     {0, 0.1},
+     kNone,
+     {1, 4, 1, 1, 1, 2, 5, 1, 3, 3, 1, 1, 1, 1}},
 }};
+
+EdgeCounts edges_of(Scene scene, std::uint64_t seed) {
+  Random random(seed, 0x5CF);
+  EdgeCounts edges;
+  const auto add = [&](double chance, int& count) { count += random.chance(chance) ? 1 : 0; };
+  switch (scene) {
+    case Scene::cliff:
+      edges.cliffs = 1;
+      add(0.4, edges.cliffs);
+      add(0.25, edges.banks);
+      add(0.35, edges.ditches);
+      add(0.1, edges.stairs);
+      add(0.2, edges.ploughed);
+      add(0.5, edges.pits);
+      add(0.3, edges.pits);
+      break;
+    case Scene::kerb:
+      edges.kerbs = 1;
+      add(0.6, edges.kerbs);
+      add(0.35, edges.stairs);
+      add(0.25, edges.ditches);
+      add(0.1, edges.cliffs);
+      break;
+    default:
+      break;
+  }
+  return edges;
+}
 
 const Recipe& recipe_of(Scene scene) {
   return kRecipes[static_cast<std::size_t>(scene)];
@@ -155,6 +207,7 @@ TerrainSettings scene_terrain(Scene scene, double area, std::uint64_t seed) {
   settings.nests = count(recipe.nests);
   settings.weights = recipe.weights;
   settings.undercut = kUndercut.draw(random);
+  settings.edges = edges_of(scene, seed);
   return settings;
 }
 

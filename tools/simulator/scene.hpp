@@ -18,10 +18,13 @@ enum class Scene : std::uint8_t {
   crater,   ///< craters, pits and potholes, some inside hollows
   ditch,    ///< ditches, ledges and logs
   grass,    ///< tufts that light passes through
-  mixed     ///< some of everything
+  mixed,    ///< some of all these
+  cliff,    ///< cliffs, banks and ditches through the whole scene, wide pits
+  kerb      ///< level and smooth, with kerbs, stairs and drains
 };
-inline constexpr std::array kScenes = {Scene::easy,  Scene::rolling, Scene::rough, Scene::crater,
-                                       Scene::ditch, Scene::grass,   Scene::mixed};
+inline constexpr std::array kScenes = {Scene::easy,   Scene::rolling, Scene::rough,
+                                       Scene::crater, Scene::ditch,   Scene::grass,
+                                       Scene::mixed,  Scene::cliff,   Scene::kerb};
 std::string_view name_of(Scene scene);
 std::optional<Scene> scene_named(std::string_view name);
 

@@ -11,16 +11,8 @@
 namespace scree {
 namespace {
 
-/// Each part of a terrain draws from a stream of its own, so that changing one leaves the others.
-enum TerrainStream : std::uint64_t {
-  kGround = 1,
-  kRoughness = 100,
-  kFeatures = 200,
-  kMaterial = 300,
-  kUnevenness = 400,
-  kTufts = 500,
-  kUndercut = 600
-};
+// Each part of a terrain draws from a stream of its own, so that changing one leaves the others.
+constexpr std::uint64_t kGround = 1, kRoughness = 100, kUnevenness = 400, kTufts = 500;
 
 double smooth(double t) {
   const double x = std::clamp(t, 0.0, 1.0);
@@ -45,19 +37,6 @@ double steep_slope(const std::vector<float>& height, std::size_t vertices, doubl
   return slopes[static_cast<std::size_t>(at)];
 }
 
-TerrainFeature feature_of(const PlacedShape& placed, int id) {
-  TerrainFeature feature;
-  feature.id = id;
-  feature.partner = placed.partner + 1;
-  feature.is_small = placed.is_small;
-  feature.shape = placed.shape.kind();
-  if (is_positive(feature.shape)) feature.kind = ObstacleKind::positive;
-  if (is_negative(feature.shape)) feature.kind = ObstacleKind::negative;
-  feature.footprint = placed.shape.footprint();
-  for (Eigen::Vector2d& corner : feature.footprint) corner += placed.center;
-  return feature;
-}
-
 }  // namespace
 
 Terrain::Terrain(const TerrainSettings& settings, std::uint64_t seed)
@@ -66,10 +45,11 @@ Terrain::Terrain(const TerrainSettings& settings, std::uint64_t seed)
       vertices_(static_cast<std::size_t>(std::lround(settings.size / settings.cell)) + 1),
       height_(vertices_ * vertices_),
       relief_(vertices_ * vertices_),
-      feature_(vertices_ * vertices_),
+      part_(vertices_ * vertices_),
       reflectivity_(vertices_ * vertices_) {
   roll_ground(seed);
   roughen_ground(seed);
+  cut_edges(seed);
   place_features(seed);
   paint(seed);
   shift_origin();
@@ -128,89 +108,6 @@ void Terrain::roughen_ground(std::uint64_t seed) {
   const double unit = settings_.unevenness / (0.25 * std::sqrt(sum));
   add_waves(
       kUneven, [&](double w) { return unit * std::pow(w, smoothness); }, seed, kUnevenness);
-}
-
-void Terrain::place_features(std::uint64_t seed) {
-  Random random(seed, kFeatures);
-  std::vector<PlacedShape> placed = lay_out_features(settings_, seed);
-  if (placed.size() > kMostFeatures) placed.resize(kMostFeatures);
-  if (settings_.undercut > 0) {
-    Random undercut(seed, kUndercut);
-    for (PlacedShape& each : placed) {
-      const bool is_chosen = undercut.chance(settings_.undercut);
-      if (is_chosen && is_loose(each.shape.kind())) each.shape.undercut(undercut);
-    }
-    underside_.assign(height_.size(), 0);
-  }
-  for (const PlacedShape& shape : placed) stamp(shape, random);
-}
-
-void Terrain::stamp(const PlacedShape& placed, Random& random) {
-  const Shape& shape = placed.shape;
-  const Eigen::Vector2d& center = placed.center;
-  TerrainFeature feature = feature_of(placed, static_cast<int>(features_.size()) + 1);
-  const GradientNoise grain(Random(random.next()), 2 * shape.reach(),
-                            std::max(0.06, 0.4 * shape.reach()));
-  const auto vertex_near = [&](double at) {
-    const double vertex =
-        std::clamp((at + half_) / settings_.cell, 0.0, static_cast<double>(vertices_ - 1));
-    return static_cast<std::size_t>(vertex);
-  };
-  const bool rises = is_positive(shape.kind()) || shape.kind() == ShapeKind::mound;
-  double ground = 0;
-  std::size_t inside = 0;
-  for (std::size_t row = vertex_near(center.y() - shape.reach());
-       row <= vertex_near(center.y() + shape.reach()); ++row) {
-    for (std::size_t column = vertex_near(center.x() - shape.reach());
-         column <= vertex_near(center.x() + shape.reach()); ++column) {
-      const Eigen::Vector2d at = Eigen::Vector2d(coordinate(column), coordinate(row)) - center;
-      const std::size_t index = row * vertices_ + column;
-      const auto before = static_cast<double>(height_[index]);
-      const double extra = raise(index, shape, at, grain);
-      if (!shape.inside(at)) continue;
-      feature_[index] = static_cast<std::uint8_t>(feature.id);
-      ground += before;
-      ++inside;
-      feature.height = rises ? std::max(feature.height, extra) : std::min(feature.height, extra);
-    }
-  }
-  ground /= static_cast<double>(std::max<std::size_t>(inside, 1));
-  feature.center = {center.x(), center.y(), ground + feature.height / 2};
-  features_.push_back(std::move(feature));
-}
-
-double Terrain::raise(std::size_t index, const Shape& shape, const Eigen::Vector2d& at,
-                      const GradientNoise& grain) {
-  const bool is_rock = is_positive(shape.kind());
-  const double grown = is_rock ? 1 + 0.2 * grain(at.x(), at.y()) : 1;
-  const double extra = grown * shape.height(at);
-  if (is_rock && !underside_.empty()) {
-    underside_[index] =
-        std::max(underside_[index], static_cast<float>(grown * shape.underside(at)));
-  }
-  height_[index] += static_cast<float>(extra);
-  if (extra != 0) relief_[index] = static_cast<float>(extra);
-  return extra;
-}
-
-void Terrain::paint(std::uint64_t seed) {
-  Random random(seed, kMaterial);
-  const double soil = random.uniform(15, 40);
-  const GradientNoise patches(Random(seed, kMaterial + 1), settings_.size, 1.5);
-  std::array<double, 256> of_feature{};
-  for (const TerrainFeature& feature : features_) {
-    // Rock is brighter than soil most of the time, not always; holes are cut into the same soil.
-    const double rock = random.uniform(25, 80);
-    of_feature[static_cast<std::size_t>(feature.id)] = is_positive(feature.shape) ? rock : soil - 3;
-  }
-  for (std::size_t row = 0; row < vertices_; ++row) {
-    for (std::size_t column = 0; column < vertices_; ++column) {
-      const std::size_t index = row * vertices_ + column;
-      const double base = feature_[index] == 0 ? soil : of_feature[feature_[index]];
-      const double value = base + 10 * patches(coordinate(column), coordinate(row));
-      reflectivity_[index] = static_cast<std::uint8_t>(std::clamp(value, 1.0, 100.0));
-    }
-  }
 }
 
 void Terrain::shift_origin() {
@@ -293,8 +190,8 @@ Eigen::Vector3d Terrain::normal(double x, double y) const {
 double Terrain::reflectivity(double x, double y) const {
   return reflectivity_[raster_cell(x, y).index];
 }
-int Terrain::feature_at(double x, double y) const {
-  return feature_[raster_cell(x, y).index];
+std::uint16_t Terrain::part_at(double x, double y) const {
+  return part_[raster_cell(x, y).index];
 }
 
 namespace {

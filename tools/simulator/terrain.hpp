@@ -6,11 +6,13 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "scree/core/obstacle.hpp"
 #include "simulator/feature_layout.hpp"
 #include "simulator/shape.hpp"
+#include "simulator/terrain_edges.hpp"
 #include "simulator/terrain_settings.hpp"
 #include "simulator/tufts.hpp"
 
@@ -20,14 +22,25 @@ class GradientNoise;
 
 /// One thing on the terrain.
 struct TerrainFeature {
-  int id = 0;  ///< from 1
-  ShapeKind shape = ShapeKind::boulder;
+  int id = 0;                        ///< from 1
+  std::string_view name;             ///< what it is
+  std::optional<ShapeKind> shape;    ///< none: it is not one of these
   std::optional<ObstacleKind> kind;  ///< none: no obstacle
   int partner = 0;                   ///< id of the obstacle 0.3-0.6 m beside it, 0 for none
   bool is_small = false;             ///< a stone or dent: finding it is neither asked for nor wrong
-  Eigen::Vector3d center;            ///< middle of the footprint, halfway up or down
-  double height = 0;                 ///< above the ground without it; below zero: depth
+  bool is_edge = false;              ///< where the ground ends or steps: see TerrainEdge
+  std::size_t first_part = 0;        ///< of those that it is made of
+  std::size_t parts = 1;             ///< of a long one each a metre long
+  bool is_long() const { return parts > 1; }
+  Eigen::Vector3d center;  ///< middle of the footprint, halfway up or down
+  double height = 0;       ///< above the ground without it; below zero: depth
   Footprint footprint;
+};
+
+/// A piece of a feature that is seen on its own.
+struct TerrainPart {
+  int feature = 0;  ///< its id
+  Eigen::Vector2d place{0, 0};
 };
 
 /// Rough ground with rocks and holes whose truth is known, as a raster of heights, and tufts of
@@ -35,13 +48,16 @@ struct TerrainFeature {
 /// gives the same terrain.
 class Terrain {
 public:
-  /// Further ones are not placed: a vertex of the raster names its feature in one byte.
-  static constexpr std::size_t kMostFeatures = 255;
+  /// Further shapes are not placed.
+  static constexpr std::size_t kMostShapes = 255;
 
   Terrain(const TerrainSettings& settings, std::uint64_t seed);
 
   const TerrainSettings& settings() const { return settings_; }
   const std::vector<TerrainFeature>& features() const { return features_; }
+  const std::vector<TerrainEdge>& edges() const { return edges_; }
+  /// Of all features, numbered from 1: the first is that of no feature.
+  const std::vector<TerrainPart>& parts() const { return parts_; }
   const Tufts& tufts() const { return tufts_; }
   double half_size() const { return half_; }
   bool covers(double x, double y) const { return std::abs(x) < half_ && std::abs(y) < half_; }
@@ -64,7 +80,12 @@ public:
   /// As Velodyne calibrates it, 0..255.
   double reflectivity(double x, double y) const;
   /// Id of the feature whose footprint covers the place, 0 for none.
-  int feature_at(double x, double y) const;
+  int feature_at(double x, double y) const { return parts_[part_at(x, y)].feature; }
+  bool is_of_edge(std::uint16_t part) const {
+    return part != 0 && features_[static_cast<std::size_t>(parts_[part].feature) - 1].is_edge;
+  }
+  /// Index of the part that lies there; of an edge it begins half a metre before it.
+  std::uint16_t part_at(double x, double y) const;
 
   /// The raster: vertices a side, and the height at one of them.
   std::size_t vertices() const { return vertices_; }
@@ -86,8 +107,13 @@ private:
   void roughen_ground(std::uint64_t seed);
   void add_waves(std::span<const double> wavelengths, const std::function<double(double)>& gain,
                  std::uint64_t seed, std::uint64_t stream);
+  void cut_edges(std::uint64_t seed);
+  void cut(const TerrainEdge& edge);
+  void add_edge(const TerrainEdge& edge, TerrainFeature feature);
+  void add_parts(TerrainFeature& feature, std::span<const Eigen::Vector2d> places);
   void place_features(std::uint64_t seed);
-  void stamp(const PlacedShape& placed, Random& random);
+  /// @param before number of the features that are no shapes
+  void stamp(const PlacedShape& placed, int before, Random& random);
   /// Raises or lowers one vertex. @param at from the middle of the shape  @return by how much
   double raise(std::size_t index, const Shape& shape, const Eigen::Vector2d& at,
                const GradientNoise& grain);
@@ -100,8 +126,11 @@ private:
   std::size_t vertices_;
   std::vector<float> height_, relief_;
   std::vector<float> underside_;  // empty where no rock has air below it
-  std::vector<std::uint8_t> feature_, reflectivity_;
+  std::vector<std::uint16_t> part_;
+  std::vector<std::uint8_t> reflectivity_;
+  std::vector<TerrainEdge> edges_;
   std::vector<TerrainFeature> features_;
+  std::vector<TerrainPart> parts_{1};
   Tufts tufts_;
 };
 

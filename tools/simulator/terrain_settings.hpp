@@ -12,6 +12,13 @@ namespace scree {
 using ShapeWeights = std::array<double, kShapeKinds>;
 inline constexpr ShapeWeights kRocksAndHoles = {1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1};
 
+/// How many edges of which kind a terrain has: see TerrainEdgeKind.
+struct EdgeCounts {
+  int cliffs = 0, kerbs = 0, banks = 0, stairs = 0, ditches = 0, pits = 0;
+  int ploughed = 0;  ///< fields of furrows
+  bool any() const { return cliffs + kerbs + banks + stairs + ditches + pits + ploughed > 0; }
+};
+
 /// How a terrain is drawn. Lengths in metres.
 struct TerrainSettings {
   double size = 40;               ///< edge of the square, centred on the origin
@@ -31,6 +38,7 @@ struct TerrainSettings {
   int nests = 0;             ///< of rocks, holes and smooth ones: one inside a hollow or on a mound
   double undercut = 0;       ///< share of the rocks that are narrower at the ground than above
   ShapeWeights weights = kRocksAndHoles;
+  EdgeCounts edges;
   double placed_within = 18;  ///< features lie in the square from -this to this, or, where there is
                               ///< a corridor, this close to it
   double gap = 0.6;           ///< least distance of two features' rims

@@ -9,7 +9,7 @@ std::vector<TrueObstacle> true_obstacles(const Terrain& terrain) {
   for (const TerrainFeature& feature : terrain.features()) {
     if (!feature.kind) continue;
     obstacles.push_back({feature.id, *feature.kind, feature.center, feature.footprint,
-                         feature.height, std::string(name_of(feature.shape))});
+                         feature.height, std::string(feature.name)});
   }
   return obstacles;
 }

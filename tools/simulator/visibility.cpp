@@ -5,11 +5,19 @@
 #include <cmath>
 
 namespace scree {
+namespace {
+
+/// Of how many parts a feature must be known.
+std::ptrdiff_t least_parts(const TerrainFeature& feature) {
+  return feature.is_long() ? 2 : 1;
+}
+
+}  // namespace
 
 void Visibility::add(std::span<const SimulatedShot> shots) {
   for (std::size_t i = 0; i < shots.size(); ++i) {
-    if (shots[i].range <= 0 || shots[i].feature == 0) continue;
-    Hits& hits = hits_[shots[i].feature];
+    if (shots[i].range <= 0 || shots[i].part == 0) continue;
+    Hits& hits = hits_[shots[i].part];
     ++hits.shots;
     hits.lasers |= 1U << (i % velodyne::kLasers);
     hits.furthest = std::max(hits.furthest, std::abs(shots[i].relief));
@@ -28,18 +36,23 @@ void Visibility::end_sweep() {
   }
 }
 
+bool Visibility::is_seen(const TerrainFeature& feature) const {
+  const auto parts = std::span(hits_).subspan(feature.first_part, feature.parts);
+  return std::ranges::count(parts, true, &Hits::seen) >= least_parts(feature);
+}
+
 std::vector<int> Visibility::seen() const {
   std::vector<int> found;
-  for (const int id : obstacle_ids(terrain_)) {
-    if (hits_[static_cast<std::size_t>(id)].seen) found.push_back(id);
+  for (const TerrainFeature& feature : terrain_.features()) {
+    if (feature.kind && !feature.is_small && is_seen(feature)) found.push_back(feature.id);
   }
   return found;
 }
 
 std::vector<int> Visibility::not_seen() const {
   std::vector<int> found = small_ids(terrain_);
-  for (const int id : obstacle_ids(terrain_)) {
-    if (!hits_[static_cast<std::size_t>(id)].seen) found.push_back(id);
+  for (const TerrainFeature& feature : terrain_.features()) {
+    if (feature.kind && !feature.is_small && !is_seen(feature)) found.push_back(feature.id);
   }
   return found;
 }
@@ -48,21 +61,38 @@ bool Visibility::is_known(const TerrainFeature& feature) const {
   constexpr int kLeastShots = 80;
   constexpr int kLeastSweeps = 3;
   constexpr double kDeepEnough = 0.4;
-  const Hits& hits = hits_[static_cast<std::size_t>(feature.id)];
+  const Hits& hits = hits_[feature.first_part];
   if (hits.all_shots < kLeastShots || hits.sweeps < kLeastSweeps) return false;
   return feature.height > 0 || static_cast<double>(hits.furthest) >= kDeepEnough * -feature.height;
 }
 
-Visibility::Sight Visibility::asked_for(const Pose& base) const {
+bool Visibility::is_due(const TerrainFeature& feature, const Pose& base) const {
   constexpr double kFarthest = 10;
+  constexpr double kFarthestEdge = 5;
   constexpr double kAhead = 0.5;
   const Eigen::Vector3d forward = base.rotation * Eigen::Vector3d::UnitX();
+  const auto is_where_asked = [&](const Eigen::Vector2d& place) {
+    const Eigen::Vector2d to = place - base.translation.head<2>();
+    return to.norm() < (feature.is_edge ? kFarthestEdge : kFarthest) &&
+           to.dot(forward.head<2>()) > kAhead;
+  };
+  if (!feature.is_long()) return is_known(feature) && is_where_asked(feature.center.head<2>());
+  constexpr int kLeastShots = 20;
+  constexpr int kLeastSweeps = 3;
+  std::ptrdiff_t due = 0;
+  for (std::size_t part = feature.first_part; part < feature.first_part + feature.parts; ++part) {
+    const Hits& hits = hits_[part];
+    const bool is_part_known = hits.all_shots >= kLeastShots && hits.sweeps >= kLeastSweeps;
+    due += is_part_known && is_where_asked(terrain_.parts()[part].place) ? 1 : 0;
+  }
+  return due >= least_parts(feature);
+}
+
+Visibility::Sight Visibility::asked_for(const Pose& base) const {
   Sight sight;
   for (const TerrainFeature& feature : terrain_.features()) {
     if (!feature.kind) continue;
-    const Eigen::Vector2d to = (feature.center - base.translation).head<2>();
-    const bool asked = !feature.is_small && is_known(feature) && to.norm() < kFarthest &&
-                       to.dot(forward.head<2>()) > kAhead;
+    const bool asked = !feature.is_small && is_due(feature, base);
     (asked ? sight.ids : sight.ignore).push_back(feature.id);
   }
   return sight;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <span>
 #include <vector>
 
@@ -18,9 +17,13 @@ namespace scree {
 /// for a hole, one at 40 % of its depth or deeper, because a brink alone could be anything; and the
 /// obstacle lies now where a planner asks: its centre within 10 m of `base` and more than 0.5 m
 /// ahead of it. Stones and dents are never asked for.
+///
+/// Of a long obstacle two of its parts, a metre each, are enough: 20 shots in three sweeps on each,
+/// and both lie where a planner asks. Those of an edge, where the ground ends, are asked for within
+/// 5 m only, and shots on the last half metre of the ground before it count too.
 class Visibility {
 public:
-  explicit Visibility(const Terrain& terrain) : terrain_(terrain) {}
+  explicit Visibility(const Terrain& terrain) : terrain_(terrain), hits_(terrain.parts().size()) {}
 
   /// Counts shots in the order of firing. @pre the first is of laser 0
   void add(std::span<const SimulatedShot> shots);
@@ -45,9 +48,12 @@ private:
     float furthest = 0;  ///< above or below the ground, metres
   };
   bool is_known(const TerrainFeature& feature) const;
+  bool is_seen(const TerrainFeature& feature) const;
+  /// Whether enough of it is known and lies where a planner asks.
+  bool is_due(const TerrainFeature& feature, const Pose& base) const;
 
   const Terrain& terrain_;
-  std::array<Hits, Terrain::kMostFeatures + 1> hits_{};
+  std::vector<Hits> hits_;  // of each part
 };
 
 }  // namespace scree

@@ -49,6 +49,13 @@ Label label_of(const TerrainFeature* feature, const Features& features) {
   return features[min_height] < 0 ? Label::negative : Label::none;
 }
 
+/// One more than the largest id.
+std::size_t id_limit(std::span<const TerrainFeature> features) {
+  int largest = 0;
+  for (const TerrainFeature& feature : features) largest = std::max(largest, feature.id);
+  return static_cast<std::size_t>(largest) + 1;
+}
+
 }  // namespace
 
 LabelledClusters& LabelledClusters::operator+=(const LabelledClusters& other) {
@@ -67,7 +74,7 @@ LabelledClusters label_clusters(const ClusteredPoints& found,
     std::uint32_t points;
   };
   std::vector<Named> all;
-  std::vector<std::uint32_t> largest(Terrain::kMostFeatures + 1);
+  std::vector<std::uint32_t> largest(id_limit(features));
   for (const Cluster& cluster : found.clusters.all()) {
     if (!std::ranges::all_of(cluster.features, [](float f) { return std::isfinite(f); })) continue;
     const TerrainFeature* feature = feature_of(cluster, found, features);

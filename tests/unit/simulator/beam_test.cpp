@@ -28,7 +28,7 @@ TEST(Beam, LevelGroundGivesOneEchoAndTheSkyNone) {
   const auto& echoes = beam.cast({0, 0, 1}, along, left, up, random);
   ASSERT_EQ(echoes.size(), 1U);
   EXPECT_NEAR(echoes[0].range, 1 / std::sin(0.2), 0.002);
-  EXPECT_EQ(echoes[0].feature, 0);
+  EXPECT_EQ(echoes[0].part, 0);
   EXPECT_GT(echoes[0].light, 10);
   const Axes skywards = axes(0.3, 0.2);
   EXPECT_TRUE(beam.cast({0, 0, 1}, skywards.along, skywards.left, skywards.up, random).empty());

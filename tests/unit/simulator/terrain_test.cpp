@@ -54,7 +54,7 @@ TEST(Terrain, FeaturesHaveTheHeightAndDepthTheyClaim) {
       }
       // The ground under it is neither flat nor level.
       EXPECT_NEAR(furthest, feature.height, 0.15 + 0.2 * std::abs(feature.height))
-          << name_of(feature.shape) << " of seed " << seed;
+          << feature.name << " of seed " << seed;
     }
     EXPECT_GE(obstacles, 13) << "seed " << seed;
   }
@@ -75,7 +75,7 @@ TEST(Terrain, WhatIsNoObstacleStaysUnderItsSlope) {
           steepest = std::max(steepest, std::abs(rise) / (b - a).norm());
         }
       }
-      EXPECT_LT(steepest, std::tan(radians(20))) << name_of(feature.shape) << " of seed " << seed;
+      EXPECT_LT(steepest, std::tan(radians(20))) << feature.name << " of seed " << seed;
       EXPECT_GT(steepest, std::tan(radians(3)));
     }
   }

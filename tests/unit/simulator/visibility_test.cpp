@@ -34,7 +34,7 @@ protected:
     for (int i = 0; i < shots; ++i) {
       SimulatedShot shot;
       shot.range = 5;
-      shot.feature = static_cast<std::uint8_t>(on.id);
+      shot.part = static_cast<std::uint16_t>(on.first_part);
       shot.relief = static_cast<float>(share_of_height * on.height);
       visibility_.add(std::span(&shot, 1));
     }
