@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "scree/detect/neighbours.hpp"
 #include "scree/detect/quantile.hpp"
@@ -14,12 +15,21 @@ namespace {
 
 constexpr float kLeastStep = 0.15F;    // metres
 constexpr float kLeastSlope = 0.5F;    // of the way to the other level: 27 degrees
-constexpr float kFarthest = 1.5F;      // metres beyond the ground that are looked at
+constexpr float kFarthest = 3;         // metres beyond the ground that are looked at
+constexpr float kFarthestStep = 1.5F;  // metres to the other level of a steep step
+constexpr float kClutter = 0.05F;      // metres: what is higher and no ground is an obstacle
 constexpr float kStripWidth = 0.4F;    // metres beyond an edge that belong to it
 constexpr float kLeastLength = 0.5F;   // metres
+constexpr float kLeastShadow = 2;      // metres: shorter ones are those of low bumps
 constexpr float kLeastWidth = 0.3F;    // of an edge's box, metres
 constexpr float kLeastTerrace = 1.5F;  // square metres of level ground above a step
+constexpr float kDense = 60;           // cells of ground up to 0.6 m around one
 constexpr std::uint16_t kFewestBeams = 4;
+
+/// The eight directions, and none in the middle.
+std::pair<int, int> direction(std::size_t i) {
+  return {static_cast<int>(i % 3) - 1, static_cast<int>(i / 3) - 1};
+}
 
 }  // namespace
 
@@ -46,18 +56,7 @@ void GroundEdges::find(const GroundSurface& surface, const HoleEvidence& beams) 
     for (std::size_t column = 1; column + 1 < columns; ++column) {
       const std::size_t cell = row * columns + column;
       if (!surface.is_ground(cell) || surface.patch_area(cell) < kLeastTerrace) continue;
-      Plane plane;
-      bool is_fitted = false;
-      for (int along_y = -1; along_y <= 1; ++along_y) {
-        for (int along_x = -1; along_x <= 1; ++along_x) {
-          const std::size_t next = cell + static_cast<std::size_t>(along_x) +
-                                   static_cast<std::size_t>(along_y) * columns;
-          if (surface.is_ground(next)) continue;
-          if (!is_fitted && !(is_fitted = fit(cell, plane))) break;
-          const Beyond beyond = look(cell, along_x, along_y, plane);
-          if (beyond.step != 0) mark(cell, along_x, along_y, beyond, plane.height);
-        }
-      }
+      look_around(cell);
     }
   }
   places_.clear();
@@ -68,6 +67,27 @@ void GroundEdges::find(const GroundSurface& surface, const HoleEvidence& beams) 
     const std::size_t begin = cells_.size();
     collect(cell, step_[cell] > 0 ? 1 : -1);
     add_edge(static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(cells_.size()), 0);
+  }
+}
+
+/// Looks from a cell of the ground in all directions where it does not go on.
+void GroundEdges::look_around(std::size_t cell) {
+  Plane plane;
+  std::array<Beyond, 9> beyond{};
+  bool is_gentle = false;  // where it slopes down on one side, what is not seen does so, too
+  for (std::size_t i = 0; i < beyond.size(); ++i) {
+    const auto [along_x, along_y] = direction(i);
+    const std::size_t next = cell + static_cast<std::size_t>(along_x) +
+                             static_cast<std::size_t>(along_y) * surface_->columns();
+    if (surface_->is_ground(next)) continue;
+    if (plane.cells == 0 && !fit(cell, plane)) return;
+    beyond[i] = look(cell, along_x, along_y, plane);
+    is_gentle |= beyond[i].is_gentle;
+  }
+  for (std::size_t i = 0; i < beyond.size(); ++i) {
+    if (beyond[i].step == 0 || (!beyond[i].is_seen && is_gentle)) continue;
+    const auto [along_x, along_y] = direction(i);
+    mark(cell, along_x, along_y, beyond[i], plane.height);
   }
 }
 
@@ -99,6 +119,7 @@ bool GroundEdges::fit(std::size_t cell, Plane& plane) const {
       yz += py * height;
     }
   }
+  plane.cells = count;
   if (count < kFewest) return false;
   // A ridge keeps the slope small across a single ring of the lidar, where nothing tells it.
   const float ridge = 2 * count;
@@ -143,14 +164,15 @@ GroundEdges::Beyond GroundEdges::look(std::size_t cell, int along_x, int along_y
     if (surface_->points_in(at) == 0) {
       if (beams_->beams_below(at) < kFewestBeams) continue;
       const float depth = level - beams_->lowest_beam(at);
-      if (depth >= kLeastStep) unseen.step = std::min(unseen.step, -depth);
+      if (depth >= kLeastStep && plane.cells >= kDense) unseen.step = std::min(unseen.step, -depth);
       continue;
     }
     // Where ground is seen, what lies below it is a reflection.
     const float top = surface_->top(at) - level;
     const float step = top < 0 ? top : surface_->seen(at) - level;
     if (std::abs(step) < kLeastStep) {
-      if (surface_->is_ground(at) || step > kClutter) return {};
+      if (surface_->is_ground(at)) return {.is_gentle = unseen.step != 0};
+      if (step > kClutter) return {};
       continue;
     }
     const bool is_steep =
@@ -160,10 +182,9 @@ GroundEdges::Beyond GroundEdges::look(std::size_t cell, int along_x, int along_y
       if (surface_->patch_area(at) < kLeastTerrace) continue;
       return {step, true};
     }
-    if (is_steep || (unseen.step != 0 && goes_on_level(at, offset, rise, steps - i))) {
-      return {step, true};
-    }
-    return {};
+    if (is_steep) return {step, true};
+    if (unseen.step != 0 && goes_on_level(at, offset, rise, steps - i)) return {step, false};
+    return {.is_gentle = true};
   }
   return unseen;
 }
@@ -242,7 +263,11 @@ void GroundEdges::add_edge(std::uint32_t begin, std::uint32_t end, int depth) {
   std::iota(order_.begin(), order_.end(), static_cast<std::uint32_t>(first));
   GroundEdge edge;
   edge.box = smallest_box(places_, {order_.data(), order_.size()});
-  if (edge.box.length < kLeastLength) {
+  const auto seen = static_cast<std::uint32_t>(
+      std::count_if(cells_.begin() + begin, cells_.begin() + end,
+                    [&](std::uint32_t cell) { return is_seen_[cell] != 0; }));
+  edge.evidence = 2 * seen < end - begin ? Evidence::shadow : Evidence::edge;
+  if (edge.box.length < (edge.evidence == Evidence::edge ? kLeastLength : kLeastShadow)) {
     places_.resize(first);
     return;
   }
@@ -263,18 +288,11 @@ void GroundEdges::add_edge(std::uint32_t begin, std::uint32_t end, int depth) {
     }
     return;
   }
-  std::size_t seen = 0;
   values_.clear();
   for (std::uint32_t i = begin; i < end; ++i) {
-    if (is_seen_[cells_[i]] != 0) {
-      ++seen;
+    if (edge.evidence == Evidence::shadow || is_seen_[cells_[i]] != 0) {
       values_.push_back(step_[cells_[i]]);
     }
-  }
-  if (2 * seen < end - begin) {
-    edge.evidence = Evidence::shadow;
-    values_.clear();
-    for (std::uint32_t i = begin; i < end; ++i) values_.push_back(step_[cells_[i]]);
   }
   edge.step = quantile({values_.data(), values_.size()}, 0.5);
   edge.ground = places_.z[first];

@@ -77,7 +77,7 @@ void HoleEvidence::follow(const Eigen::Vector3f& origin, const Eigen::Vector3f& 
   at = end;
   for (int i = 0; i < below; ++i, at += stride) {
     const std::size_t passed = surface.cell_at(at.x(), at.y());
-    if (surface.is_ground(passed)) continue;
+    if (surface.is_ground(passed) || !surface.has_neighbours(passed)) continue;
     if (beams_below_[passed] < UINT16_MAX) ++beams_below_[passed];
     lowest_beam_[passed] = std::min(lowest_beam_[passed], at.z());
   }

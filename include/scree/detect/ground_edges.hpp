@@ -38,13 +38,16 @@ public:
 private:
   /// What lies beyond a cell of the ground in one direction.
   struct Beyond {
-    float step = 0;        ///< metres, 0: no edge
-    bool is_seen = false;  ///< what lies there
+    float step = 0;          ///< metres, 0: no edge
+    bool is_seen = false;    ///< what lies there
+    bool is_gentle = false;  ///< the ground goes on, lower and not steep
   };
   struct Plane {
     float height = 0, rise_x = 0, rise_y = 0;  ///< metres, metres a cell
+    float cells = 0;                           ///< that it was laid through
   };
 
+  void look_around(std::size_t cell);
   bool fit(std::size_t cell, Plane& plane) const;
   int steps_inside(std::size_t cell, int along_x, int along_y) const;
   Beyond look(std::size_t cell, int along_x, int along_y, const Plane& plane) const;

@@ -69,6 +69,11 @@ public:
     return column_of(x) >= 0 && column_of(x) < static_cast<float>(columns_) && row_of(y) >= 0 &&
            row_of(y) < static_cast<float>(rows_);
   }
+  /// Whether a cell is none of the outermost, which hold no point.
+  bool has_neighbours(std::size_t cell) const {
+    const std::size_t column = cell % columns_, row = cell / columns_;
+    return column > 0 && column + 1 < columns_ && row > 0 && row + 1 < rows_;
+  }
   /// Place on the raster in cells, from its edge; at least 2 cells lie beyond every point.
   /// Middle of a column or a row, metres.
   float x_of(std::size_t column) const {
