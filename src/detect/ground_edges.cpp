@@ -162,7 +162,7 @@ GroundEdges::Beyond GroundEdges::look(std::size_t cell, int along_x, int along_y
     const float way = static_cast<float>(i) * stride;
     const float level = plane.height + rise * static_cast<float>(i);
     if (surface_->points_in(at) == 0) {
-      if (beams_->beams_below(at) < kFewestBeams) continue;
+      if (beams_->lost_beams(at) < kFewestBeams) continue;
       const float depth = level - beams_->lowest_beam(at);
       if (depth >= kLeastStep && plane.cells >= kDense) unseen.step = std::min(unseen.step, -depth);
       continue;

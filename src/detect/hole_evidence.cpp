@@ -17,6 +17,7 @@ HoleEvidence::HoleEvidence(std::size_t max_cells)
     : into_(max_cells),
       through_ground_(max_cells),
       beams_below_(max_cells),
+      lost_beams_(max_cells),
       lowest_beam_(max_cells),
       cells_(max_cells),
       taken_by_(max_cells) {}
@@ -26,6 +27,7 @@ void HoleEvidence::build(const SeenCloud& cloud, const GroundSurface& surface) {
   into_.assign(cells, 0);
   through_ground_.assign(cells, 0);
   beams_below_.assign(cells, 0);
+  lost_beams_.assign(cells, 0);
   lowest_beam_.assign(cells, std::numeric_limits<float>::infinity());
   taken_by_.assign(cells, 0);
   number_ = 0;
@@ -48,7 +50,9 @@ void HoleEvidence::follow_passing(const PassingBeam& beam, const GroundSurface& 
   for (int i = 0; i < steps; ++i, at += stride) {
     if (!surface.covers(at.x(), at.y())) return;
     if (at.z() > surface.height(at.x(), at.y())) continue;
-    follow(beam.origin, at + kBelowFor * beam.direction, surface);
+    const float way = static_cast<float>(i) * surface.cell_size();
+    const float below = std::min(beam.range - way, kBelowFor);
+    if (below > 0) follow(beam.origin, at + below * beam.direction, surface);
     return;
   }
 }
@@ -79,7 +83,25 @@ void HoleEvidence::follow(const Eigen::Vector3f& origin, const Eigen::Vector3f& 
     const std::size_t passed = surface.cell_at(at.x(), at.y());
     if (surface.is_ground(passed) || !surface.has_neighbours(passed)) continue;
     if (beams_below_[passed] < UINT16_MAX) ++beams_below_[passed];
-    lowest_beam_[passed] = std::min(lowest_beam_[passed], at.z());
+  }
+}
+
+/// Marks the way of a beam that did not come back, from where ground was due.
+void HoleEvidence::mark_lost(const Eigen::Vector3f& from, const Eigen::Vector3f& end,
+                             const GroundSurface& surface) {
+  const Eigen::Vector3f way = end - from;
+  const auto steps = static_cast<int>(way.head<2>().norm() / surface.cell_size());
+  const Eigen::Vector3f stride = way / static_cast<float>(std::max(steps, 1));
+  Eigen::Vector3f at = from;
+  for (int i = 0; i < steps; ++i, at += stride) {
+    if (!surface.covers(at.x(), at.y())) return;
+    const std::size_t cell = surface.cell_at(at.x(), at.y());
+    if (surface.is_ground(cell)) {
+      if (surface.height(at.x(), at.y()) - at.z() > kBelow) return;
+      continue;
+    }
+    if (lost_beams_[cell] < UINT16_MAX) ++lost_beams_[cell];
+    lowest_beam_[cell] = std::min(lowest_beam_[cell], at.z());
   }
 }
 

@@ -183,10 +183,11 @@ void RollingMap::trace_ray(const Eigen::Vector3f& from, const Eigen::Vector3f& b
 /// nothing at all.
 void RollingMap::add_passing_beams(const DeskewedSweep& sweep, const Eigen::Matrix3f& rotation,
                                    const Eigen::Vector3f& translation) {
+  constexpr float kFarBelow = 1.5F;  // the robot, metres: gentle slopes do not get there
   const auto reach = static_cast<float>(settings_.search_reach);
   for (std::size_t i = sweep_ % kRayStride; i < sweep.points.size(); i += kRayStride) {
     const Eigen::Vector3f hit(sweep.points.x[i], sweep.points.y[i], sweep.points.z[i]);
-    if (hit.squaredNorm() < reach * reach) continue;
+    if (hit.squaredNorm() < reach * reach || hit.z() > -kFarBelow) continue;
     add_passing_beam(rotation * sweep.origins[i] + translation,
                      rotation * (hit - sweep.origins[i]));
   }
@@ -198,7 +199,7 @@ void RollingMap::add_passing_beams(const DeskewedSweep& sweep, const Eigen::Matr
 
 void RollingMap::add_passing_beam(const Eigen::Vector3f& origin, const Eigen::Vector3f& beam) {
   constexpr float kLeastSlope = 0.08F;  // downwards: level ground comes within 12 m of most robots
-  const PassingBeam passing{origin, beam.normalized()};
+  const PassingBeam passing{origin, beam.normalized(), beam.norm()};
   if (passing.direction.z() > -kLeastSlope) return;
   if (passing_.size() < passing_.capacity()) {
     passing_.push_back(passing);

@@ -12,6 +12,7 @@ namespace scree {
 struct PassingBeam {
   Eigen::Vector3f origin;     ///< metres
   Eigen::Vector3f direction;  ///< of length 1
+  float range;                ///< to where it ended, metres; kNoReturnRange: nowhere
 };
 
 /// A cloud with what is known of the beams that saw it, in the cloud's frame. A span is empty where

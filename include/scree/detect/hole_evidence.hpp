@@ -24,8 +24,8 @@ public:
 
   /// Whether beams went below the level of the ground in a cell, and no ground was seen there.
   bool is_void(std::size_t cell) const { return beams_below_[cell] > 0; }
-  /// How many these were, and z of the lowest of them, metres.
-  std::uint16_t beams_below(std::size_t cell) const { return beams_below_[cell]; }
+  /// Beams that passed below that level and did not come back, and z of the lowest of them, metres.
+  std::uint16_t lost_beams(std::size_t cell) const { return lost_beams_[cell]; }
   float lowest_beam(std::size_t cell) const { return lowest_beam_[cell]; }
 
   /// What says that a cluster of points below the surface is a hole; none: nothing does.
@@ -37,13 +37,15 @@ private:
   void follow(const Eigen::Vector3f& origin, const Eigen::Vector3f& end,
               const GroundSurface& surface);
   void follow_passing(const PassingBeam& beam, const GroundSurface& surface);
+  void mark_lost(const Eigen::Vector3f& from, const Eigen::Vector3f& end,
+                 const GroundSurface& surface);
   void collect_cells(std::span<const std::uint32_t> members, const CandidatePoints& points,
                      const GroundSurface& surface);
   float rim_share(const GroundSurface& surface) const;
 
   bool knows_beams_ = false;
   FixedVector<float> into_, through_ground_;  // beams that ended below the ground, by cell
-  FixedVector<std::uint16_t> beams_below_;
+  FixedVector<std::uint16_t> beams_below_, lost_beams_;
   FixedVector<float> lowest_beam_;
   FixedVector<std::uint32_t> cells_, taken_by_;  // of the cluster, and the void beside it
   std::size_t seen_cells_ = 0;                   // the first of them: those with members
