@@ -42,6 +42,20 @@ Obstacle obstacle_of(const GroundEdge& edge) {
   return obstacle;
 }
 
+/// What hangs above ground that is seen below it stands in the way, whatever else is known of it.
+bool hangs(const Cluster& cluster) {
+  constexpr float kGap = 0.25F;          // metres below it
+  constexpr std::uint32_t kFewest = 12;  // points: fewer may be dust
+  return cluster.features[min_height] > kGap && cluster.end - cluster.begin >= kFewest;
+}
+
+Prediction classify(const Cluster& cluster, const Network& network) {
+  constexpr float kHangs = 0.9F;
+  Prediction prediction = network(cluster.features);
+  if (hangs(cluster)) prediction.positive = std::max(prediction.positive, kHangs);
+  return prediction;
+}
+
 bool is_part_of(const Obstacle& edge, const Obstacle& other) {
   constexpr double kNear = 0.3;  // metres
   return distance_to_box(other, edge.center) <= kNear || distance_to_box(edge, other.center) <= 0;
@@ -53,7 +67,7 @@ void classify(const ClusteredPoints& found, const Network& network, double min_c
               EnclosingPolygons& polygons, FixedVector<Obstacle>& obstacles, StageCounts& counts) {
   obstacles.clear();
   for (const Cluster& cluster : found.clusters.all()) {
-    const Prediction prediction = network(cluster.features);
+    const Prediction prediction = classify(cluster, network);
     if (prediction.confidence() < static_cast<float>(min_confidence)) continue;
     const bool is_positive = prediction.kind() == ObstacleKind::positive;
     const float height = cluster.features[is_positive ? max_height : min_height];

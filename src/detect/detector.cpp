@@ -58,7 +58,8 @@ void Detector::take_in(PointView cloud) {
 }
 
 ClusteredPoints Detector::find_clusters(const SeenCloud& cloud, StageTimer& timer) {
-  if (auto* edges = std::get_if<EdgeMethod>(&method_)) return edges->find(points_, counts_, timer);
+  if (auto* edges = std::get_if<EdgeMethod>(&method_))
+    return edges->find(points_, cloud, counts_, timer);
   return std::get<SurfaceMethod>(method_).find(points_, cloud, counts_, timer);
 }
 

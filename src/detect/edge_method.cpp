@@ -40,7 +40,8 @@ EdgeMethod::EdgeMethod(const EdgeSettings& settings, const DetectorLimits& limit
       labels_(limits.candidates),
       clusters_(limits.candidates),
       ground_(static_cast<float>(settings.ground_inner), static_cast<float>(settings.ground_outer),
-              limits.points) {
+              limits.points),
+      sectors_(limits.points) {
   if (settings.clustering == EdgeClustering::supervoxel) supervoxels_.emplace(limits.candidates);
 }
 
@@ -57,7 +58,8 @@ float EdgeMethod::reach() const {
   return reach;
 }
 
-ClusteredPoints EdgeMethod::find(const PointCloud& points, StageCounts& counts, StageTimer& timer) {
+ClusteredPoints EdgeMethod::find(const PointCloud& points, const SeenCloud& cloud,
+                                 StageCounts& counts, StageTimer& timer) {
   sloped_.cells.build(points, gradient_.reach());
   sloped_.compute(gradient_, {});
   select_edges(counts);
@@ -67,7 +69,9 @@ ClusteredPoints EdgeMethod::find(const PointCloud& points, StageCounts& counts, 
   CandidatePoints& edges = suppression_ ? kept_ : edges_;
   cluster(edges, counts, timer);
   timer.done(Stage::clusters);
-  measure_clusters(edges);
+  const bool knows_beams = !cloud.origins.empty();
+  if (knows_beams) sectors_.build(points, cloud.origins.front());
+  measure_clusters(edges, knows_beams);
   timer.done(Stage::features);
   return result();
 }
@@ -114,14 +118,15 @@ void EdgeMethod::grow_supervoxels(const CandidatePoints& edges, StageCounts& cou
   counts.blocks_kept = supervoxels_->blocks();
 }
 
-void EdgeMethod::measure_clusters(CandidatePoints& edges) {
+void EdgeMethod::measure_clusters(CandidatePoints& edges, bool knows_beams) {
   for (Cluster& cluster : clusters_.all()) {
     const auto members = clusters_.members(cluster);
     const float middle = (cluster.lowest + cluster.highest) / 2;
-    cluster.evidence = Evidence::inside;
     cluster.ground = ground_.around(cluster.box, sloped_.cells, is_edge_, middle);
     for (const std::uint32_t i : members) edges.height[i] = edges.points.z[i] - cluster.ground;
     cluster.features = measure(edges, members);
+    cluster.evidence =
+        knows_beams ? sectors_.of(members, edges.points, cluster.ground) : Evidence::inside;
   }
 }
 

@@ -169,7 +169,8 @@ GroundEdges::Beyond GroundEdges::look(std::size_t cell, int along_x, int along_y
     }
     // Where ground is seen, what lies below it is a reflection.
     const float top = surface_->top(at) - level;
-    const float step = top < 0 ? top : surface_->seen(at) - level;
+    const float middle = surface_->seen(at) - level;
+    const float step = top <= -kLeastStep ? top : std::max(middle, -kLeastStep / 2);
     if (std::abs(step) < kLeastStep) {
       if (surface_->is_ground(at)) return {.is_gentle = unseen.step != 0};
       if (step > kClutter) return {};
@@ -182,11 +183,20 @@ GroundEdges::Beyond GroundEdges::look(std::size_t cell, int along_x, int along_y
       if (surface_->patch_area(at) < kLeastTerrace) continue;
       return {step, true};
     }
-    if (is_steep) return {step, true};
+    if (is_steep && !has_ground_next(at, offset)) return {step, true};
     if (unseen.step != 0 && goes_on_level(at, offset, rise, steps - i)) return {step, false};
     return {.is_gentle = true};
   }
   return unseen;
+}
+
+/// Whether ground is seen shortly beyond a cell: then what lies below its level is a reflection, or
+/// a narrow hole.
+bool GroundEdges::has_ground_next(std::size_t cell, std::ptrdiff_t offset) const {
+  const std::size_t next = cell + static_cast<std::size_t>(offset);
+  return surface_->has_neighbours(next) &&
+         (surface_->is_ground(next) ||
+          surface_->is_ground(next + static_cast<std::size_t>(offset)));
 }
 
 /// Whether the ground goes on from a cell as it does before the edge: a hollow rises again.

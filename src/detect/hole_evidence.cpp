@@ -107,7 +107,8 @@ void HoleEvidence::mark_lost(const Eigen::Vector3f& from, const Eigen::Vector3f&
 
 Evidence HoleEvidence::of(std::span<const std::uint32_t> members, const CandidatePoints& points,
                           const GroundSurface& surface) {
-  constexpr float kMostThrough = 0.3F, kRim = 0.5F, kInside = 0.3F;
+  constexpr float kMostThrough = 0.3F, kInside = 0.3F;
+  constexpr float kRim = 0.5F, kRimAlone = 0.8F;  // the latter where nothing is known of beams
   collect_cells(members, points, surface);
   float into = 0, through = 0;
   for (std::size_t i = 0; i < seen_cells_; ++i) {
@@ -116,7 +117,7 @@ Evidence HoleEvidence::of(std::span<const std::uint32_t> members, const Candidat
   }
   const float rim = rim_share(surface);
   if (knows_beams_ && through > kMostThrough * (into + through)) return Evidence::none;
-  if (rim < kRim) return Evidence::none;
+  if (rim < (knows_beams_ ? kRim : kRimAlone)) return Evidence::none;
   return static_cast<float>(seen_cells_) >= kInside * static_cast<float>(cells_.size())
              ? Evidence::inside
              : Evidence::wall;

@@ -4,7 +4,9 @@
 #include <optional>
 
 #include "scree/config/settings.hpp"
+#include "scree/core/seen_cloud.hpp"
 #include "scree/core/stage_times.hpp"
+#include "scree/detect/beam_sectors.hpp"
 #include "scree/detect/candidate_points.hpp"
 #include "scree/detect/clusters.hpp"
 #include "scree/detect/ground_height.hpp"
@@ -29,7 +31,9 @@ public:
   float reach() const;
 
   /// @pre finite points within reach(), no more of them than the limits say
-  ClusteredPoints find(const PointCloud& points, StageCounts& counts, StageTimer& timer);
+  /// @param cloud that they come from
+  ClusteredPoints find(const PointCloud& points, const SeenCloud& cloud, StageCounts& counts,
+                       StageTimer& timer);
 
   // What each stage of the last call gave.
   const SlopedCloud& sloped() const { return sloped_; }
@@ -42,7 +46,7 @@ private:
   void select_edges(StageCounts& counts);
   void cluster(const CandidatePoints& edges, StageCounts& counts, StageTimer& timer);
   void grow_supervoxels(const CandidatePoints& edges, StageCounts& counts);
-  void measure_clusters(CandidatePoints& edges);
+  void measure_clusters(CandidatePoints& edges, bool knows_beams);
 
   EdgeSettings settings_;
   std::size_t max_points_, max_edges_;
@@ -58,6 +62,7 @@ private:
   FixedVector<std::uint32_t> labels_;  // cluster of each edge point
   Clusters clusters_;
   GroundHeight ground_;
+  BeamSectors sectors_;
 };
 
 }  // namespace scree

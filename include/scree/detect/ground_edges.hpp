@@ -51,6 +51,7 @@ private:
   bool fit(std::size_t cell, Plane& plane) const;
   int steps_inside(std::size_t cell, int along_x, int along_y) const;
   Beyond look(std::size_t cell, int along_x, int along_y, const Plane& plane) const;
+  bool has_ground_next(std::size_t cell, std::ptrdiff_t offset) const;
   bool goes_on_level(std::size_t cell, std::ptrdiff_t offset, float rise, int steps) const;
   void mark(std::size_t cell, int along_x, int along_y, const Beyond& beyond, float ground);
   void collect(std::size_t start, std::int8_t sign);

@@ -10,6 +10,7 @@
 #include "read/lidar_capture.hpp"
 #include "scree/capture/capture.hpp"
 #include "scree/capture/pcd.hpp"
+#include "scree/detect/viewpoint.hpp"
 #include "scree/publish/jsonl.hpp"
 
 namespace scree::cli {
@@ -19,6 +20,7 @@ namespace fs = std::filesystem;
 
 struct DetectOptions {
   fs::path input, config, out, stages;
+  std::vector<float> viewpoint;  // x, y, z in metres; empty: the file's
 };
 
 /// The lists as lines of JSON, in a file or on standard output.
@@ -60,6 +62,12 @@ void warn_of_losses(const StageCounts& counts, std::string_view what) {
   warn(what, counts.obstacles_dropped, "obstacles found no room: raise memory.obstacles");
 }
 
+/// The stated one, else the file's.
+Eigen::Vector3f viewpoint_of(const DetectOptions& options, const PcdCloud& cloud) {
+  if (options.viewpoint.empty()) return cloud.viewpoint;
+  return {options.viewpoint[0], options.viewpoint[1], options.viewpoint[2]};
+}
+
 void detect_in_cloud(const DetectOptions& options) {
   Settings settings = capture_settings(options.input, options.config);
   const auto cloud = read_pcd(options.input);
@@ -73,10 +81,14 @@ void detect_in_cloud(const DetectOptions& options) {
 
   ListWriter writer(options.out);
   ObstacleList list(static_cast<std::size_t>(memory.obstacles));
+  const Eigen::Vector3f viewpoint = viewpoint_of(options, *cloud);
+  const bool is_known = !options.viewpoint.empty() || could_be_seen_from(viewpoint, *cloud);
   StageTimer none;
-  detector->detect(
-      {.points = *cloud, .beams = {}, .origins = {&cloud->viewpoint, 1}, .passing = {}},
-      list.obstacles, none);
+  detector->detect({.points = *cloud,
+                    .beams = {},
+                    .origins = {&viewpoint, is_known ? std::size_t{1} : 0},
+                    .passing = {}},
+                   list.obstacles, none);
   writer.write(list);
   writer.finish();
   warn_of_losses(detector->counts(), options.input.string());
@@ -117,6 +129,12 @@ void add_detect(CLI::App& app) {
   command->add_option("--out", options->out, "JSON lines file; default: standard output");
   command->add_option("--stages", options->stages,
                       "folder for the cloud of each stage as PCD; prints their counts");
+  command
+      ->add_option(
+          "--viewpoint", options->viewpoint,
+          "where a cloud was seen from, X Y Z in metres; default: the file's, where it can "
+          "have been seen from there")
+      ->expected(3);
   command->callback([options] {
     if (options->input.extension() == ".pcd") {
       detect_in_cloud(*options);
