@@ -36,6 +36,16 @@ void append(std::string& text, const Eigen::Vector3d& vector) {
   append(text, {vector.x(), vector.y(), vector.z()});
 }
 
+void append(std::string& text, const ConvexPolygon& polygon) {
+  std::string_view separator = "[";
+  for (const Eigen::Vector2d& corner : polygon) {
+    text += separator;
+    append(text, {corner.x(), corner.y()});
+    separator = ", ";
+  }
+  text += ']';
+}
+
 void append(std::string& text, const Obstacle& obstacle) {
   text += "{\"id\": ";
   append(text, obstacle.id);
@@ -53,6 +63,15 @@ void append(std::string& text, const Obstacle& obstacle) {
   append(text, obstacle.height);
   text += ", \"points\": ";
   append(text, obstacle.points);
+  if (obstacle.evidence != Evidence::none) {
+    text += ", \"evidence\": \"";
+    text += name(obstacle.evidence);
+    text += '"';
+  }
+  if (obstacle.footprint.has_area()) {
+    text += ", \"footprint\": ";
+    append(text, obstacle.footprint);
+  }
   text += '}';
 }
 

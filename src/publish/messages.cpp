@@ -1,6 +1,7 @@
 #include "scree/publish/messages.hpp"
 
 #include <algorithm>
+#include <vector>
 
 namespace scree {
 namespace {
@@ -13,7 +14,67 @@ Eigen::Vector3d to_vector(const double (&array)[3]) {
   return {array[0], array[1], array[2]};
 }
 
+static_assert(obstacle_t::INSIDE == static_cast<int>(Evidence::inside) &&
+              obstacle_t::WALL == static_cast<int>(Evidence::wall) &&
+              obstacle_t::EDGE == static_cast<int>(Evidence::edge) &&
+              obstacle_t::SHADOW == static_cast<int>(Evidence::shadow));
+
+Evidence evidence_of(std::int8_t number) {
+  const bool is_known = number >= 0 && static_cast<std::size_t>(number) < kEvidenceNames.size();
+  return is_known ? static_cast<Evidence>(number) : Evidence::none;
+}
+
+/// Vectors of the message only grow, so that a shorter list frees nothing that a longer one needs.
+template <class Item>
+void grow(std::vector<Item>& items, std::size_t size) {
+  if (items.size() < size) items.resize(size);
+}
+
+void to_message(const Obstacle& from, obstacle_t& to) {
+  to.id = from.id;
+  to.kind = from.kind == ObstacleKind::positive ? obstacle_t::POSITIVE : obstacle_t::NEGATIVE;
+  to.confidence = from.confidence;
+  to_array(from.center, to.center);
+  to_array(from.extent, to.extent);
+  to.yaw = from.yaw;
+  to.height = from.height;
+  to.points = static_cast<std::int32_t>(from.points);
+  to.evidence = static_cast<std::int8_t>(from.evidence);
+  const std::size_t corners = from.footprint.has_area() ? from.footprint.size() : 0;
+  to.corners = static_cast<std::int32_t>(corners);
+  grow(to.footprint, corners);
+  for (std::size_t i = 0; i < corners; ++i) {
+    grow(to.footprint[i], 2);
+    std::copy_n(from.footprint[i].data(), 2, to.footprint[i].data());
+  }
+}
+
+Obstacle from_message(const obstacle_t& from) {
+  Obstacle to;
+  to.id = from.id;
+  to.kind = from.kind > 0 ? ObstacleKind::positive : ObstacleKind::negative;
+  to.confidence = from.confidence;
+  to.center = to_vector(from.center);
+  to.extent = to_vector(from.extent);
+  to.yaw = from.yaw;
+  to.height = from.height;
+  to.points = static_cast<std::uint32_t>(from.points);
+  to.evidence = evidence_of(from.evidence);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(from.corners); ++i) {
+    to.footprint.push_back({from.footprint[i][0], from.footprint[i][1]});
+  }
+  return to;
+}
+
 }  // namespace
+
+void make_room(std::size_t obstacles, obstacle_list_t& message) {
+  obstacle_t obstacle{};
+  obstacle.corners = ConvexPolygon::kMaxCorners;
+  obstacle.footprint.assign(ConvexPolygon::kMaxCorners, std::vector<double>(2));
+  message.size = static_cast<std::int32_t>(obstacles);
+  message.obstacles.assign(obstacles, obstacle);
+}
 
 void to_message(const ObstacleList& list, obstacle_list_t& message) {
   message.stamp_ns = list.stamp_ns;
@@ -24,40 +85,21 @@ void to_message(const ObstacleList& list, obstacle_list_t& message) {
   message.q[2] = q.y();
   message.q[3] = q.z();
   message.size = static_cast<std::int32_t>(list.obstacles.size());
-  message.obstacles.resize(list.obstacles.size());
+  grow(message.obstacles, list.obstacles.size());
   for (std::size_t i = 0; i < list.obstacles.size(); ++i) {
-    const Obstacle& from = list.obstacles[i];
-    obstacle_t& to = message.obstacles[i];
-    to.id = from.id;
-    to.kind = from.kind == ObstacleKind::positive ? obstacle_t::POSITIVE : obstacle_t::NEGATIVE;
-    to.confidence = from.confidence;
-    to_array(from.center, to.center);
-    to_array(from.extent, to.extent);
-    to.yaw = from.yaw;
-    to.height = from.height;
-    to.points = static_cast<std::int32_t>(from.points);
+    to_message(list.obstacles[i], message.obstacles[i]);
   }
 }
 
 void from_message(const obstacle_list_t& message, ObstacleList& list) {
+  const auto size = static_cast<std::size_t>(message.size);
   list.stamp_ns = message.stamp_ns;
   list.pose.translation = to_vector(message.p);
   list.pose.rotation = {message.q[0], message.q[1], message.q[2], message.q[3]};
-  if (list.obstacles.capacity() < message.obstacles.size()) {
-    list.obstacles = FixedVector<Obstacle>(message.obstacles.size());
-  }
+  if (list.obstacles.capacity() < size) list.obstacles = FixedVector<Obstacle>(size);
   list.obstacles.clear();
-  for (const obstacle_t& from : message.obstacles) {
-    Obstacle to;
-    to.id = from.id;
-    to.kind = from.kind > 0 ? ObstacleKind::positive : ObstacleKind::negative;
-    to.confidence = from.confidence;
-    to.center = to_vector(from.center);
-    to.extent = to_vector(from.extent);
-    to.yaw = from.yaw;
-    to.height = from.height;
-    to.points = static_cast<std::uint32_t>(from.points);
-    list.obstacles.push_back(to);
+  for (std::size_t i = 0; i < size; ++i) {
+    list.obstacles.push_back(from_message(message.obstacles[i]));
   }
 }
 

@@ -15,8 +15,7 @@ Result<Publisher> Publisher::open(const std::string& lcm_url, std::size_t max_ob
 }
 
 Publisher::Publisher(lcm_t* lcm, std::size_t max_obstacles) : lcm_(lcm) {
-  list_.size = static_cast<std::int32_t>(max_obstacles);
-  list_.obstacles.resize(max_obstacles);
+  make_room(max_obstacles, list_);
   encoded_.resize(static_cast<std::size_t>(list_.getEncodedSize()));
 }
 

@@ -2,27 +2,33 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
+#include <utility>
 
 namespace scree {
 
 bool is_in_zone(const StopSettings& zone, const Pose& pose, const Obstacle& obstacle) {
   const Pose to_base = pose.inverse();
-  const Eigen::Vector3d center = to_base * obstacle.center;
-  const Eigen::Vector3d length =
-      to_base.rotation * Eigen::Vector3d(std::cos(obstacle.yaw), std::sin(obstacle.yaw), 0);
-  const Eigen::Vector2d along = length.head<2>().normalized(), across(-along.y(), along.x());
+  ConvexPolygon outline = outline_of(obstacle);
+  for (Eigen::Vector2d& corner : outline) {
+    const Eigen::Vector3d place(corner.x(), corner.y(), obstacle.center.z());
+    corner = (to_base * place).head<2>() - Eigen::Vector2d(zone.length / 2, 0);
+  }
   const Eigen::Vector2d zone_half(zone.length / 2, zone.width / 2);
-  const Eigen::Vector2d between = center.head<2>() - Eigen::Vector2d(zone.length / 2, 0);
-  // Two rectangles are apart when they are apart along a side of one of them.
-  const auto are_apart_along = [&](const Eigen::Vector2d& axis) {
-    const double zone_reach = zone_half.dot(axis.cwiseAbs());
-    const double box_reach = obstacle.extent.x() / 2 * std::abs(along.dot(axis)) +
-                             obstacle.extent.y() / 2 * std::abs(across.dot(axis));
-    return std::abs(between.dot(axis)) > zone_reach + box_reach;
-  };
-  return !are_apart_along(Eigen::Vector2d::UnitX()) && !are_apart_along(Eigen::Vector2d::UnitY()) &&
-         !are_apart_along(along) && !are_apart_along(across);
+  // Two convex polygons are apart when they are apart across a side of one of them.
+  for (const auto& [x, y] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
+    const Eigen::Vector2d outwards(x, y);
+    const double reach = zone_half.dot(outwards.cwiseAbs());
+    const auto is_beyond = [&](const Eigen::Vector2d& corner) {
+      return outwards.dot(corner) > reach;
+    };
+    if (std::ranges::all_of(outline, is_beyond)) return false;
+  }
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const Eigen::Vector2d side = outline[(i + 1) % outline.size()] - outline[i];
+    const Eigen::Vector2d inwards(-side.y(), side.x());
+    if (inwards.dot(outline[i]) > zone_half.dot(inwards.cwiseAbs())) return false;
+  }
+  return true;
 }
 
 void StopLine::update(const ObstacleList& list, std::int64_t now_ns) {

@@ -51,7 +51,15 @@ class DetectTest(ProgramTest):
         ids = [obstacle["id"] for obstacle in obstacle_list["obstacles"]]
         self.assertEqual(len(ids), len(set(ids)))
         for obstacle in obstacle_list["obstacles"]:
-            self.assertEqual(list(obstacle), KEYS)
+            evidence = obstacle.get("evidence")
+            evidence_key = ["evidence"] if evidence else []
+            self.assertEqual(list(obstacle), [*KEYS, *evidence_key, "footprint"])
+            self.assertIn(evidence, (None, "inside", "wall", "edge", "shadow"))
+            self.assertFalse(obstacle["kind"] == "negative" and evidence is None)
+            self.assertTrue(3 <= len(obstacle["footprint"]) <= 16)
+            for x, y in obstacle["footprint"]:
+                away = math.dist((x, y), obstacle["center"][:2])
+                self.assertLess(away, math.dist((0, 0, 0), obstacle["extent"]))
             self.assertGreater(obstacle["id"], 0)
             self.assertIn(obstacle["kind"], ("positive", "negative"))
             self.assertTrue(0 <= obstacle["confidence"] <= 1)

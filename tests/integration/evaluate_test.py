@@ -110,6 +110,11 @@ class EvaluateTest(ProgramTest):
                         {"id": i, "kind": kind(), "confidence": 1, "center": center,
                          "extent": extent, "yaw": draw.uniform(-1.5, 1.5), "height": 0.3,
                          "points": 5})  # fmt: skip
+                    if i % 2 == 0:
+                        line["obstacles"][-1]["footprint"] = [
+                            [center[0] + extent[0] * math.cos(k), center[1] + math.sin(k)]
+                            for k in range(6)
+                        ]
                 lines.append(json.dumps(line) + "\n")
             truth = {"obstacles": obstacles, "poses": poses, "visible": visible}
             self.check_against_reference(
@@ -150,6 +155,18 @@ class EvaluateTest(ProgramTest):
         columns = [line.split()[2:] for line in table if line.startswith("drive 1")]
         self.assertEqual(columns, ["30.00 0.300 0.900 1.00 3.00 -0.50 2.00 -1.00 4.00".split()])
 
+    def test_a_footprint_counts_instead_of_the_box(self):
+        truth = self.write("t.json", self.example())
+        aside = {"center": [5, 1, 0.2], "extent": [0.2, 0.2, 0.4]}
+        wide = [[4.4, -0.6], [5.6, -0.6], [5.6, 1.2], [4.4, 1.2]]
+        box = self.write("box.jsonl", self.line(**aside))
+        self.assertEqual(self.evaluate(truth, box)["all"]["true_positives"], 0)
+        for corners in [wide, wide[::-1], [*wide, wide[0]], [*wide, [5, 0]]]:
+            lists = self.write("l.jsonl", self.line(**aside, footprint=corners))
+            self.assertEqual(self.evaluate(truth, lists)["all"]["true_positives"], 1, corners)
+        none = self.write("l.jsonl", self.line(**aside, footprint=[], evidence="edge"))
+        self.assertEqual(self.evaluate(truth, none)["all"]["true_positives"], 0)
+
     def test_no_list_at_all_does_not_count(self):
         truth, empty = self.write("t.json", self.example()), self.write("l.jsonl", "")
         self.assertFalse(self.evaluate(truth, empty)["counts"])
@@ -188,6 +205,8 @@ class EvaluateTest(ProgramTest):
             self.line(center=[1, 2, None]),
             self.line(extent=[1, -2, 1]),
             self.line(confidence="high"),
+            self.line(evidence="rumour"),
+            self.line(footprint=[[1, 2], [3]]),
             good_lists.replace("0.9", "NaN"),
             {**self.line(), "pose": {"p": [0, 0, 0], "q": [0, 0, 0, 0]}},
             {**self.line(), "stamp_ns": 1.5},

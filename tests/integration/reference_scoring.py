@@ -93,7 +93,7 @@ def score(truth, lists):
         there = {
             o["id"]: Thing(pose, o["center"], o["footprint"]) for o in truth["obstacles"]
         }
-        found = [(Thing(each["pose"], o["center"], box_corners(o)), o["kind"])
+        found = [(Thing(each["pose"], o["center"], o.get("footprint") or box_corners(o)), o["kind"])
                  for o in each["obstacles"]]  # fmt: skip
         near = sorted(
             (math.dist(obstacle.center, thing.center), number, i)

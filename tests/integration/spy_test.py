@@ -25,13 +25,18 @@ def box(number, kind, x, y):
     one = scree.obstacle_t()
     one.id, one.kind, one.confidence, one.height = number, kind, 0.9, 0.4 * kind
     one.center, one.extent, one.yaw = [10 - y, -4 + x, 1.2], [1.4, 0.7, 0.4], 0.3
+    if kind < 0:
+        # A metre to the right of the box, so that what is drawn tells which of the two it is.
+        corners = ((0.5, -0.3), (1.5, -0.3), (1.5, 0.3), (0.5, 0.3))
+        one.evidence, one.corners = scree.obstacle_t.INSIDE, len(corners)
+        one.footprint = [[one.center[0] + dx, one.center[1] + dy] for dx, dy in corners]
     return one
 
 
 def found():
     message = scree.obstacle_list_t()
     message.p, message.q = [10, -4, 1], [math.sqrt(0.5), 0, 0, math.sqrt(0.5)]
-    message.obstacles = [box(3, 1, 8, 0), box(4, -1, 4, 6)]
+    message.obstacles = [box(3, 1, 8, 0), box(4, -1, 4, 7)]
     message.size = len(message.obstacles)
     return message
 

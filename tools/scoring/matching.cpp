@@ -29,16 +29,6 @@ struct Shadow {
   double range() const { return center.norm(); }
 };
 
-Outline corners_of(const Obstacle& box) {
-  const Eigen::Vector2d along =
-      Eigen::Vector2d(std::cos(box.yaw), std::sin(box.yaw)) * box.extent.x() / 2;
-  const Eigen::Vector2d aside =
-      Eigen::Vector2d(-std::sin(box.yaw), std::cos(box.yaw)) * box.extent.y() / 2;
-  const Eigen::Vector2d middle = box.center.head<2>();
-  return {middle + along + aside, middle - along + aside, middle - along - aside,
-          middle + along - aside};
-}
-
 bool can_match(const Shadow& detection, const Shadow& obstacle) {
   const double apart = (detection.center - obstacle.center).norm();
   if (apart > obstacle.reach + std::max(kGrowth, detection.reach)) return false;
@@ -99,7 +89,8 @@ Comparison compare(const Truth& truth, const Truth::Sight& sight, const Obstacle
     obstacles.emplace_back(true_to_base, each.center, each.footprint);
   }
   for (const Obstacle& each : list.obstacles) {
-    detections.emplace_back(reported_to_base, each.center, corners_of(each));
+    const ConvexPolygon outline = outline_of(each);
+    detections.emplace_back(reported_to_base, each.center, Outline(outline.begin(), outline.end()));
   }
   const std::vector<Candidate> nearest_first = candidates(obstacles, detections);
   const auto is_in = [&](const std::vector<int>& ids, std::size_t obstacle) {

@@ -25,8 +25,8 @@ struct Comparison {
 
 /// Scores one list. The truth is brought into base by the true pose at the list's stamp, detections
 /// by the reported pose; footprints are those of the x-y plane there. A footprint lies at the
-/// height of its obstacle's centre, a detection's is its box at its centre. The result points into
-/// truth and list. @pre the truth has poses, and every id an obstacle
+/// height of its obstacle's centre, a detection's at its own, its box where it has none. The result
+/// points into truth and list. @pre the truth has poses, and every id an obstacle
 Comparison compare(const Truth& truth, const Truth::Sight& sight, const ObstacleList& list);
 
 }  // namespace scree

@@ -118,16 +118,10 @@ public class ObstacleView implements SpyPlugin {
 
     private void draw(
         Graphics2D page, AffineTransform base, obstacle_list_t list, obstacle_t box, boolean isOld) {
-      double cos = Math.cos(box.yaw), sin = Math.sin(box.yaw);
-      double[] corners = new double[8];
-      for (int i = 0; i < 4; i++) {
-        double along = (i == 0 || i == 3 ? 0.5 : -0.5) * box.extent[0];
-        double across = (i < 2 ? 0.5 : -0.5) * box.extent[1];
-        double[] corner = {
-          box.center[0] + cos * along - sin * across,
-          box.center[1] + sin * along + cos * across,
-          box.center[2]
-        };
+      double[][] outline = box.corners > 2 ? box.footprint : cornersOf(box);
+      double[] corners = new double[2 * outline.length];
+      for (int i = 0; i < outline.length; i++) {
+        double[] corner = {outline[i][0], outline[i][1], box.center[2]};
         System.arraycopy(inBase(list, corner), 0, corners, 2 * i, 2);
       }
       Color kind = box.kind == obstacle_t.POSITIVE ? ROCK : HOLE;
@@ -141,6 +135,21 @@ public class ObstacleView implements SpyPlugin {
           String.format(Locale.ROOT, "#%d %.2f m", box.id, box.height),
           (float) shape.getBounds2D().getMaxX() + 3,
           (float) shape.getBounds2D().getCenterY() + 4);
+    }
+
+    /** x and y of the box's corners in `odom`. */
+    private static double[][] cornersOf(obstacle_t box) {
+      double cos = Math.cos(box.yaw), sin = Math.sin(box.yaw);
+      double[][] corners = new double[4][];
+      for (int i = 0; i < 4; i++) {
+        double along = (i == 0 || i == 3 ? 0.5 : -0.5) * box.extent[0];
+        double across = (i < 2 ? 0.5 : -0.5) * box.extent[1];
+        corners[i] =
+            new double[] {
+              box.center[0] + cos * along - sin * across, box.center[1] + sin * along + cos * across
+            };
+      }
+      return corners;
     }
 
     /** x and y in `base` of a place in `odom`: its offset from p, turned back by q (w, x, y, z). */

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -48,8 +49,23 @@ struct Obstacle {
   ConvexPolygon footprint;  ///< around its points, seen from above; empty: the box stands for it
 };
 
-/// Brings an obstacle from a child frame into its parent, its footprint at the height of its
-/// centre. @pre the frames have the same yaw and lean little against each other
+/// The footprint where it is known, else the box seen from above; in the frame of the obstacle.
+inline ConvexPolygon outline_of(const Obstacle& obstacle) {
+  if (obstacle.footprint.has_area()) return obstacle.footprint;
+  const Eigen::Vector2d along(std::cos(obstacle.yaw), std::sin(obstacle.yaw));
+  const Eigen::Vector2d length = obstacle.extent.x() / 2 * along;
+  const Eigen::Vector2d width = obstacle.extent.y() / 2 * Eigen::Vector2d(-along.y(), along.x());
+  const Eigen::Vector2d middle = obstacle.center.head<2>();
+  ConvexPolygon box;
+  box.push_back(middle + length - width);
+  box.push_back(middle + length + width);
+  box.push_back(middle - length + width);
+  box.push_back(middle - length - width);
+  return box;
+}
+
+/// Brings centre and footprint from a child frame into its parent, the footprint at the height of
+/// the centre. The yaw stays.
 inline void move_into_parent(const Pose& child, Obstacle& obstacle) {
   const double z = obstacle.center.z();
   for (Eigen::Vector2d& corner : obstacle.footprint) {

@@ -1,12 +1,17 @@
 #pragma once
 
+#include <cstddef>
 #include <scree/obstacle_list_t.hpp>
 
 #include "scree/core/obstacle.hpp"
 
 namespace scree {
 
-/// The LCM message of a list. Allocates only when the message's vector has to grow.
+/// Takes memory for lists of so many obstacles. The message is then the longest of them.
+void make_room(std::size_t obstacles, obstacle_list_t& message);
+
+/// The LCM message of a list. Allocates only when the message's vectors have to grow: they may be
+/// longer than the counts beside them say.
 void to_message(const ObstacleList& list, obstacle_list_t& message);
 
 /// The list of an LCM message. Allocates only when the list has to grow.

@@ -7,8 +7,9 @@
 
 namespace scree {
 
-/// Whether an obstacle's box, seen from above, overlaps the zone ahead of the robot: in `base`,
-/// x from 0 to the length, y to half the width on both sides. One whose place is no number does.
+/// Whether an obstacle's outline, its footprint or else its box, overlaps the zone ahead of the
+/// robot: in `base`, x from 0 to the length, y to half the width on both sides. One whose place is
+/// no number does.
 /// @param pose `base` in the frame of the obstacle
 bool is_in_zone(const StopSettings& zone, const Pose& pose, const Obstacle& obstacle);
 

@@ -42,6 +42,24 @@ TEST(Jsonl, WritesTheTextOfTheInterface) {
             "\"points\": 118}]}\n");
 }
 
+TEST(Jsonl, WritesEvidenceAndFootprintWhereThereAreAny) {
+  ObstacleList list = example();
+  list.obstacles[1].evidence = Evidence::wall;
+  list.obstacles[1].footprint.push_back({4, 0.5});
+  list.obstacles[1].footprint.push_back({5, 0.5});
+  std::string text;
+  append_json_line(list, text);
+  EXPECT_NE(text.find("\"points\": 118, \"evidence\": \"wall\"}]}\n"), std::string::npos) << text;
+  list.obstacles[1].footprint.push_back({4.5, 1.25});
+  text.clear();
+  append_json_line(list, text);
+  EXPECT_NE(text.find("\"points\": 118}, {"), std::string::npos) << text;
+  EXPECT_NE(text.find("\"points\": 118, \"evidence\": \"wall\", "
+                      "\"footprint\": [[4, 0.5], [5, 0.5], [4.5, 1.25]]}]}\n"),
+            std::string::npos)
+      << text;
+}
+
 TEST(Jsonl, AnEmptyListIsStillALine) {
   std::string text = "before\n";
   append_json_line(ObstacleList(), text);

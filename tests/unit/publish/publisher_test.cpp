@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "allocation_counter.hpp"
 #include "scree/publish/jsonl.hpp"
 #include "scree/publish/messages.hpp"
 #include "scree/publish/multicast.hpp"
@@ -32,6 +33,10 @@ ObstacleList list_of(std::size_t size) {
     obstacle.yaw = -0.4;
     obstacle.height = 0.5;
     obstacle.points = 12;
+    obstacle.evidence = static_cast<Evidence>(i % kEvidenceNames.size());
+    for (std::size_t corner = 0; i % 3 != 0 && corner < 3 + i % 14; ++corner) {
+      obstacle.footprint.push_back({static_cast<double>(corner), 0.1 * static_cast<double>(i)});
+    }
     list.obstacles.push_back(obstacle);
   }
   return list;
@@ -41,6 +46,33 @@ std::string json(const ObstacleList& list) {
   std::string text;
   append_json_line(list, text);
   return text;
+}
+
+TEST(Messages, WithRoomMadeListsOfAnyLengthAllocateNothing) {
+  const ObstacleList longest = list_of(40), shorter = list_of(7);
+  obstacle_list_t message{};
+  make_room(40, message);
+  const int most = message.getEncodedSize();
+  ObstacleList back(40);
+  const std::size_t before = test::allocations();
+  for (const ObstacleList* list : {&longest, &shorter, &longest}) {
+    to_message(*list, message);
+    from_message(message, back);
+  }
+  EXPECT_EQ(test::allocations(), before);
+  EXPECT_EQ(json(back), json(longest));
+  EXPECT_LE(message.getEncodedSize(), most);
+}
+
+TEST(Messages, AnUnknownEvidenceIsNone) {
+  obstacle_list_t message{};
+  to_message(list_of(2), message);
+  message.obstacles[0].evidence = -1;
+  message.obstacles[1].evidence = 99;
+  ObstacleList list;
+  from_message(message, list);
+  EXPECT_EQ(list.obstacles[0].evidence, Evidence::none);
+  EXPECT_EQ(list.obstacles[1].evidence, Evidence::none);
 }
 
 /// Receives the next message of either type, or fails after ten seconds.

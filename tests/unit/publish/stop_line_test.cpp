@@ -92,6 +92,24 @@ TEST(IsInZone, AgreesWithPoints) {
   EXPECT_GT(outside, 400);
 }
 
+TEST(IsInZone, AFootprintCountsInsteadOfTheBox) {
+  Obstacle wall = box(2, 1, 3, 3);
+  EXPECT_TRUE(is_in(wall));
+  // A triangle whose long side cuts the box's corner in the zone off.
+  for (const auto& [x, y] : {std::pair{3.5, -0.5}, {3.5, 2.5}, {0.5, 2.5}}) {
+    wall.footprint.push_back({x, y});
+  }
+  EXPECT_FALSE(is_in(wall));
+  const auto pose = [](double way, double yaw) {
+    return Pose{{way, way, 0}, from_roll_pitch_yaw(0, 0, yaw)};
+  };
+  EXPECT_FALSE(is_in(wall, pose(0.1, 0)));
+  EXPECT_TRUE(is_in(wall, pose(0.3, 0)));
+  // Looking straight at the long side.
+  EXPECT_FALSE(is_in(wall, pose(0, std::numbers::pi / 4)));
+  EXPECT_TRUE(is_in(wall, pose(0.1, std::numbers::pi / 4)));
+}
+
 TEST(IsInZone, AnObstacleThatIsNowhereCounts) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(is_in(box(kNan, 0, 0.2, 0.2)));

@@ -78,6 +78,25 @@ TEST(Scoring, OrFootprintsThatOverlapByAFifth) {
   EXPECT_THAT(counts(score(truth, {beside}).scores.all()), ElementsAre(0, 1, 1));
 }
 
+TEST(Scoring, AFootprintCountsInsteadOfTheBox) {
+  const Truth truth = standing({there(1, 5, 0)}, {1});
+  Obstacle beside = seen(5, 0.9);
+  EXPECT_THAT(counts(score(truth, {beside}).scores.all()), ElementsAre(0, 1, 1));
+  // 1.1 m wide, 1.6 m long: 0.7 of 2.06 square metres shared.
+  for (const auto& [x, y] : {std::pair{4.5, -0.2}, {5.6, -0.2}, {5.6, 1.4}, {4.5, 1.4}}) {
+    beside.footprint.push_back({x, y});
+  }
+  EXPECT_THAT(counts(score(truth, {beside}).scores.all()), ElementsAre(1, 0, 0));
+  // It moves with the robot.
+  Scorer scorer;
+  const Pose pose{{0, 100, 0}, from_roll_pitch_yaw(0, 0, 0)};
+  beside.center.y() += 100;
+  for (Eigen::Vector2d& corner : beside.footprint) corner.y() += 100;
+  const ObstacleList list = list_of({beside}, 0, pose);
+  scorer.add(truth, {&list, 1});
+  EXPECT_THAT(counts(scorer.result().scores.all()), ElementsAre(1, 0, 0));
+}
+
 TEST(Scoring, TheBoxIsTurnedByItsYaw) {
   const Truth truth = standing({there(1, 5, 0)}, {1});
   Obstacle slab = seen(5, 0.9);

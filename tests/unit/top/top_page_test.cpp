@@ -99,6 +99,12 @@ TEST(TopPage, ShowsHealthAndObstacles) {
   EXPECT_THAT(text, AllOf(HasSubstr("^"), HasSubstr("#"), HasSubstr("O")));
 }
 
+TEST(TopPage, CallsAnEdgeByItsName) {
+  TopView view = driving();
+  view.list->obstacles[0].evidence = Evidence::edge;
+  EXPECT_THAT(text_of(top_page(view, 30, 120), 30, 120), HasSubstr("4     edge    6.00   90 R"));
+}
+
 TEST(TopPage, SaysWhenNobodyPublishes) {
   TopView view;
   view.url = "udpm://239.255.76.67:7667?ttl=0";

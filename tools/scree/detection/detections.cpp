@@ -1,5 +1,6 @@
 #include "detection/detections.hpp"
 
+#include <algorithm>
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -7,9 +8,25 @@
 
 #include "commands.hpp"
 #include "scoring/json_field.hpp"
+#include "scree/detect/enclosing_polygon.hpp"
 
 namespace scree::cli {
 namespace {
+
+Evidence evidence_of(const JsonField& field) {
+  const auto at = std::ranges::find(kEvidenceNames, field.text());
+  if (at == kEvidenceNames.end()) field.refuse("unknown evidence \"" + field.text() + "\"");
+  return static_cast<Evidence>(at - kEvidenceNames.begin());
+}
+
+ConvexPolygon footprint_of(const JsonField& field) {
+  std::vector<Eigen::Vector2d> corners;
+  for (const JsonField& corner : field.items()) {
+    const auto each = corner.items(2);
+    corners.emplace_back(each[0].number(), each[1].number());
+  }
+  return enclosing_polygon(corners);
+}
 
 Obstacle obstacle_of(const JsonField& field) {
   Obstacle obstacle;
@@ -23,6 +40,8 @@ Obstacle obstacle_of(const JsonField& field) {
   obstacle.height = field["height"].number();
   obstacle.points = static_cast<std::uint32_t>(
       field["points"].integer(0, std::numeric_limits<std::uint32_t>::max()));
+  if (field.has("evidence")) obstacle.evidence = evidence_of(field["evidence"]);
+  if (field.has("footprint")) obstacle.footprint = footprint_of(field["footprint"]);
   return obstacle;
 }
 

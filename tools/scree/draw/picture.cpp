@@ -76,7 +76,7 @@ FixedVector<Obstacle> in_base(const ObstacleList& list) {
   const double yaw = yaw_of(list.pose.rotation);
   FixedVector<Obstacle> obstacles(list.obstacles.size());
   for (Obstacle obstacle : list.obstacles) {
-    obstacle.center = to_base * obstacle.center;
+    move_into_parent(to_base, obstacle);
     obstacle.yaw -= yaw;
     obstacles.push_back(obstacle);
   }

@@ -137,14 +137,11 @@ void draw_robot(Drawing& drawing, double x, double y) {
   cairo_stroke(cairo);
 }
 
-void draw_box(Drawing& drawing, const View& view, const Obstacle& obstacle) {
+void draw_outline(Drawing& drawing, const View& view, const Obstacle& obstacle) {
   cairo_t* cairo = drawing.cairo();
   const Colour colour = obstacle.kind == ObstacleKind::positive ? kBlue : kRed;
-  const double cosine = std::cos(obstacle.yaw), sine = std::sin(obstacle.yaw);
-  for (const auto& [along, aside] : {std::pair{1, 1}, {1, -1}, {-1, -1}, {-1, 1}}) {
-    const double length = along * obstacle.extent.x() / 2, width = aside * obstacle.extent.y() / 2;
-    cairo_line_to(cairo, view.across(obstacle.center.y() + sine * length + cosine * width),
-                  view.down(obstacle.center.x() + cosine * length - sine * width));
+  for (const Eigen::Vector2d& corner : outline_of(obstacle)) {
+    cairo_line_to(cairo, view.across(corner.y()), view.down(corner.x()));
   }
   cairo_close_path(cairo);
   drawing.set({colour.red, colour.green, colour.blue, 0.18});
@@ -275,7 +272,7 @@ Drawing draw_top_view(const PointView& points, const FixedVector<Obstacle>& obst
 
   drawing.clip(kPlot);
   draw_points(drawing, view, points, low, high);
-  for (const Obstacle& obstacle : obstacles) draw_box(drawing, view, obstacle);
+  for (const Obstacle& obstacle : obstacles) draw_outline(drawing, view, obstacle);
   const double robot_x = view.across(0), robot_y = view.down(0);
   draw_robot(drawing, robot_x, robot_y);
   const int left_out = draw_labels(drawing, view, obstacles, {robot_x - 12, robot_y - 17, 24, 30});

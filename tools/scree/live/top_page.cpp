@@ -138,6 +138,11 @@ void add_losses(const health_t& health, Area& area) {
   add("", drops_of(health));
 }
 
+const char* word_for(const Obstacle& obstacle) {
+  if (obstacle.evidence == Evidence::edge) return "edge";
+  return obstacle.kind == ObstacleKind::positive ? "rock" : "hole";
+}
+
 std::string bearing(const Sighting& sighting) {
   const double bearing = degrees(std::atan2(sighting.left, sighting.ahead));
   return fmt::format("{:.0f} {}", std::abs(bearing), bearing < 0 ? 'R' : 'L');
@@ -158,8 +163,7 @@ void add_obstacles(const TopView& view, const std::vector<Sighting>& obstacles, 
       area.add(fmt::format("and {} farther off", obstacles.size() - i));
       return;
     }
-    area.add(fmt::format("{:<6}{:<5}{:>7.2f}{:>7}{:>14}{:>9.2f}{:>9.2f}", one.id,
-                         one.kind == ObstacleKind::positive ? "rock" : "hole",
+    area.add(fmt::format("{:<6}{:<5}{:>7.2f}{:>7}{:>14}{:>9.2f}{:>9.2f}", one.id, word_for(one),
                          obstacles[i].distance, bearing(obstacles[i]),
                          fmt::format("{:.2f} x {:.2f}", one.extent.x(), one.extent.y()), one.height,
                          one.confidence));

@@ -69,11 +69,13 @@ void append_text(const ObstacleList& list, std::string& text) {
   for (const Obstacle& obstacle : list.obstacles) {
     fmt::format_to(std::back_inserter(text),
                    "  #{:<4} {} at x {:6.2f} y {:6.2f} m, {} {:.2f} m, {:.2f} x {:.2f} m, "
-                   "confidence {:.2f}, {} points\n",
+                   "confidence {:.2f}, {} points{}{}\n",
                    obstacle.id, name(obstacle.kind), obstacle.center.x(), obstacle.center.y(),
                    obstacle.kind == ObstacleKind::positive ? "height" : "depth ",
                    std::abs(obstacle.height), obstacle.extent.x(), obstacle.extent.y(),
-                   obstacle.confidence, obstacle.points);
+                   obstacle.confidence, obstacle.points,
+                   obstacle.evidence == Evidence::none ? "" : ", evidence ",
+                   obstacle.evidence == Evidence::none ? "" : name(obstacle.evidence));
   }
 }
 
