@@ -32,13 +32,26 @@ const FixedVector<Echo>& Beam::cast(const Eigen::Vector3d& origin, const Eigen::
 bool Beam::add(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double share,
                Random& random) {
   const auto ground = caster_.cast(origin, direction, reach_);
-  const auto blade = terrain_.tufts().cast(origin, direction, ground.value_or(reach_), random);
-  if (!ground && !blade) return false;
+  const auto met = terrain_.volumes().cast(origin, direction, ground.value_or(reach_), random);
+  if (!ground && !met) return false;
+  if (met && met->volume->is_dark) return false;
   Echo echo;
-  echo.range = blade ? *blade : *ground;
+  echo.range = met ? met->range : *ground;
   double facing = 0.6;  // blades face all ways
-  if (blade) {
-    echo.reflectivity = random.uniform(20, 50);
+  if (met) {
+    const Volume& volume = *met->volume;
+    const Eigen::Vector3d hit = origin + met->range * direction;
+    echo.reflectivity = random.uniform(volume.darkest, volume.brightest);
+    if (volume.density == Volume::kSolid) {
+      facing = std::max(-direction.dot(volume.normal(hit)), 0.0);
+    }
+    // What hangs higher says nothing of what stands below.
+    constexpr double kHighest = 2;
+    const double up = terrain_.above_ground(hit);
+    if (volume.part != 0 && up < kHighest) {
+      echo.part = volume.part;
+      echo.relief = static_cast<float>(up);
+    }
   } else {
     const Eigen::Vector3d hit = origin + *ground * direction;
     const double air = terrain_.underside(hit.x(), hit.y());

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <vector>
 
+#include "simulator/cloud_volumes.hpp"
 #include "simulator/noise.hpp"
 
 namespace scree {
@@ -17,7 +19,8 @@ enum CloudStream : std::uint64_t { kPoints = 0xC10D, kDensity, kUnseen, kPasses 
 /// How many points each cell of the raster gets, relative to the others; row by row.
 class Density {
 public:
-  Density(const Terrain& terrain, const CloudSettings& settings, std::uint64_t seed)
+  Density(const Terrain& terrain, const VolumePoints& volumes, const CloudSettings& settings,
+          std::uint64_t seed)
       : terrain_(terrain), cells_(terrain.vertices() - 1), weight_(cells_ * cells_) {
     const GradientNoise looked_at(Random(seed, kDensity), 2 * terrain.half_size(), 6);
     for (std::size_t cell = 0; cell < weight_.size(); ++cell) {
@@ -31,10 +34,19 @@ public:
       const double share = std::clamp(looked_at(at.x(), at.y()), -0.5, 0.5);
       weight_[cell] *= std::pow(settings.density_spread, share);
     }
+    if (volumes.area() > 0) {
+      for (std::size_t cell = 0; cell < weight_.size(); ++cell) {
+        weight_[cell] *= volumes.light_at(middle_of(cell).x(), middle_of(cell).y());
+      }
+    }
     if (settings.unseen_patches) hide_patches(Random(seed, kUnseen));
     for (std::size_t cell = 1; cell < weight_.size(); ++cell) weight_[cell] += weight_[cell - 1];
   }
 
+  /// How much of the surface is the ground's, square metres.
+  double area() const {
+    return weight_.back() * terrain_.settings().cell * terrain_.settings().cell;
+  }
   /// Lower corner of a cell drawn at random.
   Eigen::Vector2d draw(Random& random) const {
     const double drawn = random.uniform(0, weight_.back());
@@ -69,7 +81,8 @@ private:
       const double share = random.uniform(0.4, 1.2);
       if (!chosen || feature.is_edge) continue;
       if (feature.height > kTall) {
-        hide_behind(feature, away, share * feature.height);
+        constexpr double kTallest = 2;  // whose shadow a robot that drives on does not see into
+        hide_behind(feature, away, share * std::min(feature.height, kTallest));
       } else if (feature.shape == ShapeKind::pit || feature.shape == ShapeKind::pothole) {
         hide_floor(feature, away);
       }
@@ -169,11 +182,11 @@ private:
 };
 
 /// How far above the ground a point lies that a blade of a tuft threw back; 0 where none did.
-double blade_height(const Tufts& tufts, double x, double y, Random& random) {
-  const Tuft* tuft = tufts.at(x, y);
+double blade_height(const Volumes& volumes, double x, double y, Random& random) {
+  const Volume* tuft = volumes.at(x, y);
   if (tuft == nullptr) return 0;
-  const double away = std::hypot(x - tuft->base.x(), y - tuft->base.y()) / tuft->radius;
-  const double top = tuft->height * std::sqrt(std::max(1 - away * away, 0.0));
+  const double away = std::hypot(x - tuft->center.x(), y - tuft->center.y()) / tuft->half.x();
+  const double top = tuft->half.z() * std::sqrt(std::max(1 - away * away, 0.0));
   // Looked at from anywhere between straight above and the side.
   const double path = top * random.uniform(1, 3);
   return random.chance(std::exp(-tuft->density * path)) ? 0 : top * random.uniform();
@@ -184,23 +197,31 @@ double blade_height(const Tufts& tufts, double x, double y, Random& random) {
 PointCloud reconstructed_cloud(const Terrain& terrain, const CloudSettings& settings,
                                std::uint64_t seed) {
   Random random(seed, kPoints);
-  const Density density(terrain, settings, seed);
+  const VolumePoints volumes(terrain);
+  const Density density(terrain, volumes, settings, seed);
+  const double above_ground = volumes.area() / (volumes.area() + density.area());
   const Passes passes(2 * terrain.half_size(), settings.ghosting, seed);
   const double cell = terrain.settings().cell;
   const auto scattered =
       static_cast<std::size_t>(settings.scattered_share * static_cast<double>(settings.points));
   PointCloud cloud(settings.points);
   for (std::size_t i = 0; i < settings.points; ++i) {
+    double bright = 0;
+    std::optional<Eigen::Vector3d> off_ground;
+    if (above_ground > 0 && i >= scattered && random.chance(above_ground)) {
+      while (!off_ground) off_ground = volumes.draw(random, bright);
+    }
     const Eigen::Vector2d corner = density.draw(random);
     const double x = corner.x() + random.uniform(0, cell);
     const double y = corner.y() + random.uniform(0, cell);
-    const double reflectivity = terrain.reflectivity(x, y) + 3 * random.normal();
-    Eigen::Vector3d point(x, y, terrain.height(x, y));
+    const double reflectivity =
+        (off_ground ? bright : terrain.reflectivity(x, y)) + 3 * random.normal();
+    Eigen::Vector3d point = off_ground.value_or(Eigen::Vector3d(x, y, terrain.height(x, y)));
     if (i < scattered) {
       point.z() += random.uniform(-0.5, 2.0);
     } else {
-      point.z() += blade_height(terrain.tufts(), x, y, random);
-      point += passes.error(random.index(Passes::kPassCount), x, y);
+      if (!off_ground) point.z() += blade_height(terrain.volumes(), x, y, random);
+      point += passes.error(random.index(Passes::kPassCount), point.x(), point.y());
       for (double& coordinate : point) coordinate += settings.noise * random.normal();
     }
     const Eigen::Vector3f rounded = point.cast<float>();

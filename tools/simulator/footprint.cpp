@@ -17,6 +17,29 @@ bool contains(const Footprint& footprint, const Eigen::Vector2d& point) {
   return inside;
 }
 
+Footprint hull(std::vector<Eigen::Vector2d> points) {
+  std::ranges::sort(points, [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
+  });
+  Footprint corners;
+  const auto turns_left = [&](const Eigen::Vector2d& next) {
+    const Eigen::Vector2d a = corners.back() - corners[corners.size() - 2];
+    const Eigen::Vector2d b = next - corners.back();
+    return a.x() * b.y() - a.y() * b.x() > 0;
+  };
+  // The lower side from left to right, then the upper one back.
+  for (const bool is_upper : {false, true}) {
+    const std::size_t start = corners.size();
+    if (is_upper) std::ranges::reverse(points);
+    for (const Eigen::Vector2d& point : points) {
+      while (corners.size() > start + 1 && !turns_left(point)) corners.pop_back();
+      corners.push_back(point);
+    }
+    corners.pop_back();
+  }
+  return corners;
+}
+
 double distance(const Footprint& footprint, const Eigen::Vector2d& point) {
   if (contains(footprint, point)) return 0;
   double nearest = std::numeric_limits<double>::infinity();

@@ -136,7 +136,52 @@ constexpr std::array<Recipe, kScenes.size()> kRecipes = {{
      {0, 0.1},
      kNone,
      {1, 4, 1, 1, 1, 2, 5, 1, 3, 3, 1, 1, 1, 1}},
+    {"wood",
+     {2, 14},
+     0.02,
+     {0.005, 0.03},
+     {0, 0.2},
+     {0.2, 0.5},
+     {0.2, 0.8},
+     {0, 0.6},
+     {0, 0.15},
+     {0, 0.1},
+     {0, 0.2},
+     {3, 2, 2, 2, 4, 1, 2, 2, 2, 2, 2, 1, 1, 1}},
+    {"meadow",
+     {1, 8},
+     0.015,
+     {0, 0.02},
+     {0, 0.2},
+     {0.2, 0.5},
+     {0.2, 0.6},
+     {0, 0.3},
+     {0, 0.1},
+     {0, 0.1},
+     {0, 0.15},
+     {3, 1, 1, 2, 2, 1, 2, 1, 2, 2, 2, 3, 1, 1}},
 }};
+
+PlantCounts plants_of(Scene scene, std::uint64_t seed) {
+  Random random(seed, 0x5CD);
+  PlantCounts plants;
+  switch (scene) {
+    case Scene::wood:
+      plants.trees = random.uniform(0.015, 0.09);
+      plants.bushes = random.uniform(0.01, 0.1);
+      plants.tall_grass = random.uniform(0, 0.6);
+      break;
+    case Scene::meadow:
+      plants.trees = random.uniform(0, 0.004);
+      plants.bushes = random.uniform(0.004, 0.05);
+      plants.hedges = static_cast<int>(random.index(4));
+      plants.tall_grass = random.uniform(0.3, 0.85);
+      break;
+    default:
+      break;
+  }
+  return plants;
+}
 
 EdgeCounts edges_of(Scene scene, std::uint64_t seed) {
   Random random(seed, 0x5CF);
@@ -208,6 +253,7 @@ TerrainSettings scene_terrain(Scene scene, double area, std::uint64_t seed) {
   settings.weights = recipe.weights;
   settings.undercut = kUndercut.draw(random);
   settings.edges = edges_of(scene, seed);
+  settings.plants = plants_of(scene, seed);
   return settings;
 }
 

@@ -20,11 +20,13 @@ enum class Scene : std::uint8_t {
   grass,    ///< tufts that light passes through
   mixed,    ///< some of all these
   cliff,    ///< cliffs, banks and ditches through the whole scene, wide pits
-  kerb      ///< level and smooth, with kerbs, stairs and drains
+  kerb,     ///< level and smooth, with kerbs, stairs and drains
+  wood,     ///< trees, bushes, uneven ground
+  meadow    ///< tall grass over metres, bushes, hedges
 };
-inline constexpr std::array kScenes = {Scene::easy,   Scene::rolling, Scene::rough,
-                                       Scene::crater, Scene::ditch,   Scene::grass,
-                                       Scene::mixed,  Scene::cliff,   Scene::kerb};
+inline constexpr std::array kScenes = {Scene::easy,  Scene::rolling, Scene::rough, Scene::crater,
+                                       Scene::ditch, Scene::grass,   Scene::mixed, Scene::cliff,
+                                       Scene::kerb,  Scene::wood,    Scene::meadow};
 std::string_view name_of(Scene scene);
 std::optional<Scene> scene_named(std::string_view name);
 

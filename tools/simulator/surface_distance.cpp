@@ -48,13 +48,11 @@ double distance_to_cell(const Terrain& terrain, std::ptrdiff_t column, std::ptrd
   return std::min(distance_to_triangle(point, {a, b, c}), distance_to_triangle(point, {a, c, d}));
 }
 
-/// Whether a tuft is so near that a voxel or a pose that is a little off may have put a blade here.
-bool is_near_tuft(const Terrain& terrain, const Vector3d& point) {
+/// Whether grass, a plant or the like is so near that a voxel or a pose that is a little off may
+/// have put a leaf of it here.
+bool is_near_volume(const Terrain& terrain, const Vector3d& point) {
   constexpr double kMargin = 0.1;  // metres
-  return std::ranges::any_of(terrain.tufts().all(), [&](const Tuft& tuft) {
-    const double reach = tuft.radius + kMargin;
-    return (tuft.base - point).head<2>().squaredNorm() < reach * reach;
-  });
+  return terrain.volumes().is_near(point.x(), point.y(), kMargin);
 }
 
 }  // namespace
@@ -86,7 +84,7 @@ double SurfaceError::rms() const {
 
 SurfaceError& SurfaceError::operator+=(const SurfaceError& other) {
   points += other.points;
-  near_tufts += other.near_tufts;
+  near_volumes += other.near_volumes;
   squares += other.squares;
   return *this;
 }
@@ -97,8 +95,8 @@ SurfaceError surface_error(const Terrain& terrain, PointView cloud, const Pose& 
     const Vector3d point =
         to_world * Eigen::Vector3f(cloud.x[i], cloud.y[i], cloud.z[i]).cast<double>();
     if (!terrain.covers(point.x(), point.y())) continue;
-    if (is_near_tuft(terrain, point)) {
-      ++error.near_tufts;
+    if (is_near_volume(terrain, point)) {
+      ++error.near_volumes;
       continue;
     }
     const double distance = distance_to_surface(terrain, point);

@@ -16,9 +16,9 @@ double distance_to_surface(const Terrain& terrain, const Eigen::Vector3d& point)
 
 /// How far a cloud lies from the true surface.
 struct SurfaceError {
-  std::size_t points = 0;      ///< that were compared
-  std::size_t near_tufts = 0;  ///< left out: a blade of grass is there, but no surface
-  double squares = 0;          ///< sum of the squared distances, square metres
+  std::size_t points = 0;        ///< that were compared
+  std::size_t near_volumes = 0;  ///< left out: grass or a plant is there, but no surface
+  double squares = 0;            ///< sum of the squared distances, square metres
 
   double rms() const;  ///< metres, NaN without points
   SurfaceError& operator+=(const SurfaceError& other);

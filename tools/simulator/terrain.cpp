@@ -53,7 +53,7 @@ Terrain::Terrain(const TerrainSettings& settings, std::uint64_t seed)
   place_features(seed);
   paint(seed);
   shift_origin();
-  grow_tufts(seed);
+  put_up_things(seed);
 }
 
 void Terrain::add_waves(std::span<const double> wavelengths,
@@ -116,34 +116,29 @@ void Terrain::shift_origin() {
   for (TerrainFeature& feature : features_) feature.center.z() -= static_cast<double>(origin);
 }
 
-void Terrain::grow_tufts(std::uint64_t seed) {
-  if (settings_.tuft_cover <= 0) return;
+std::vector<Volume> Terrain::grow_tufts(std::uint64_t seed) const {
+  if (settings_.tuft_cover <= 0) return {};
   Random random(seed, kTufts);
   const double tallest = random.uniform(0.12, 0.45);
   const double densest = random.uniform(3, 12);
   const GradientNoise meadows(Random(seed, kTufts + 1), settings_.size, 5);
-  std::vector<Tuft> tufts;
+  std::vector<Volume> tufts;
   // Overlapping tufts cover less than the sum of their areas.
   const double wanted = -std::log(1 - std::min(settings_.tuft_cover, 0.9)) * 4 * half_ * half_;
   for (double covered = 0; covered < wanted;) {
-    Tuft tuft;
-    tuft.radius = random.uniform(0.06, 0.3);
-    covered += std::numbers::pi * tuft.radius * tuft.radius;
+    const double radius = random.uniform(0.06, 0.3);
+    covered += std::numbers::pi * radius * radius;
     const double x = random.uniform(-half_, half_);
     const double y = random.uniform(-half_, half_);
     // Denser in some places: every second one stands only where the meadow is.
     if (random.chance(0.5) && meadows(x, y) < 0) continue;
-    if (const int id = feature_at(x, y);
-        id != 0 && features_[static_cast<std::size_t>(id) - 1].kind) {
-      continue;
-    }
-    tuft.base = {x, y, height(x, y)};
-    tuft.height = tallest * random.uniform(0.35, 1);
-    const double most = -std::log(settings_.tuft_light) / (2 * tuft.radius);
-    tuft.density = std::min(densest * random.uniform(0.3, 1), most);
-    tufts.push_back(tuft);
+    if (is_obstacle_at(x, y)) continue;
+    const double tall = tallest * random.uniform(0.35, 1);
+    const double most = -std::log(settings_.tuft_light) / (2 * radius);
+    const double density = std::min(densest * random.uniform(0.3, 1), most);
+    tufts.push_back(Volume::tuft({x, y, height(x, y)}, radius, tall, density));
   }
-  tufts_ = Tufts(std::move(tufts), settings_.size);
+  return tufts;
 }
 
 Terrain::RasterCell Terrain::raster_cell(double x, double y) const {

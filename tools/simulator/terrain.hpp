@@ -14,11 +14,12 @@
 #include "simulator/shape.hpp"
 #include "simulator/terrain_edges.hpp"
 #include "simulator/terrain_settings.hpp"
-#include "simulator/tufts.hpp"
+#include "simulator/volumes.hpp"
 
 namespace scree {
 
 class GradientNoise;
+struct TerrainThing;
 
 /// One thing on the terrain.
 struct TerrainFeature {
@@ -58,7 +59,8 @@ public:
   const std::vector<TerrainEdge>& edges() const { return edges_; }
   /// Of all features, numbered from 1: the first is that of no feature.
   const std::vector<TerrainPart>& parts() const { return parts_; }
-  const Tufts& tufts() const { return tufts_; }
+  /// Grass, plants and what else stands above the ground.
+  const Volumes& volumes() const { return volumes_; }
   double half_size() const { return half_; }
   bool covers(double x, double y) const { return std::abs(x) < half_ && std::abs(y) < half_; }
 
@@ -81,6 +83,10 @@ public:
   double reflectivity(double x, double y) const;
   /// Id of the feature whose footprint covers the place, 0 for none.
   int feature_at(double x, double y) const { return parts_[part_at(x, y)].feature; }
+  bool is_obstacle_at(double x, double y) const {
+    const int id = feature_at(x, y);
+    return id != 0 && features_[static_cast<std::size_t>(id) - 1].kind.has_value();
+  }
   bool is_of_edge(std::uint16_t part) const {
     return part != 0 && features_[static_cast<std::size_t>(parts_[part].feature) - 1].is_edge;
   }
@@ -119,7 +125,10 @@ private:
                const GradientNoise& grain);
   void paint(std::uint64_t seed);
   void shift_origin();
-  void grow_tufts(std::uint64_t seed);
+  std::vector<Volume> grow_tufts(std::uint64_t seed) const;
+  /// Plants, and what else is put onto the finished ground.
+  void put_up_things(std::uint64_t seed);
+  void put_up(TerrainThing thing, std::vector<Volume>& volumes);
 
   TerrainSettings settings_;
   double half_;
@@ -131,7 +140,7 @@ private:
   std::vector<TerrainEdge> edges_;
   std::vector<TerrainFeature> features_;
   std::vector<TerrainPart> parts_{1};
-  Tufts tufts_;
+  Volumes volumes_;
 };
 
 /// All rocks and holes of a terrain that are asked for.

@@ -2,6 +2,8 @@
 #include <cmath>
 
 #include "simulator/noise.hpp"
+#include "simulator/placement.hpp"
+#include "simulator/plants.hpp"
 #include "simulator/terrain.hpp"
 
 namespace scree {
@@ -182,6 +184,26 @@ void Terrain::paint(std::uint64_t seed) {
       reflectivity_[index] = static_cast<std::uint8_t>(std::clamp(value, 1.0, 100.0));
     }
   }
+}
+
+void Terrain::put_up_things(std::uint64_t seed) {
+  std::vector<Volume> volumes = grow_tufts(seed);
+  FreeGround ground(*this);
+  for (TerrainThing& thing : draw_plants(*this, ground, seed)) put_up(std::move(thing), volumes);
+  for (Volume& tuft : grow_tall_grass(*this, ground, seed)) volumes.push_back(std::move(tuft));
+  volumes_ = Volumes(std::move(volumes), settings_.size);
+}
+
+void Terrain::put_up(TerrainThing thing, std::vector<Volume>& volumes) {
+  thing.feature.id = static_cast<int>(features_.size()) + 1;
+  add_parts(thing.feature, thing.places);
+  for (Volume& volume : thing.volumes) {
+    if (volume.part != 0) {
+      volume.part = static_cast<std::uint16_t>(volume.part - 1U + thing.feature.first_part);
+    }
+    volumes.push_back(volume);
+  }
+  features_.push_back(std::move(thing.feature));
 }
 
 }  // namespace scree

@@ -19,6 +19,13 @@ struct EdgeCounts {
   bool any() const { return cliffs + kerbs + banks + stairs + ditches + pits + ploughed > 0; }
 };
 
+/// What grows on a terrain beside tufts of grass.
+struct PlantCounts {
+  double trees = 0, bushes = 0;  ///< a square metre
+  int hedges = 0;
+  double tall_grass = 0;  ///< share of the ground under it
+};
+
 /// How a terrain is drawn. Lengths in metres.
 struct TerrainSettings {
   double size = 40;               ///< edge of the square, centred on the origin
@@ -39,6 +46,7 @@ struct TerrainSettings {
   double undercut = 0;       ///< share of the rocks that are narrower at the ground than above
   ShapeWeights weights = kRocksAndHoles;
   EdgeCounts edges;
+  PlantCounts plants;
   double placed_within = 18;  ///< features lie in the square from -this to this, or, where there is
                               ///< a corridor, this close to it
   double gap = 0.6;           ///< least distance of two features' rims

@@ -1,5 +1,6 @@
 #include "training/labels.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -12,26 +13,38 @@ namespace {
 
 constexpr double kGrowth = 0.15;
 
-/// Mounds and hollows cover nothing: an obstacle may lie on one.
-bool covers(const TerrainFeature& feature, const Eigen::Vector2d& point) {
-  return feature.kind && distance(feature.footprint, point) <= kGrowth;
-}
+/// The ground that an obstacle covers. Mounds and hollows cover none: an obstacle may lie on one.
+class CoveredGround {
+public:
+  explicit CoveredGround(const TerrainFeature& feature) : feature_(&feature) {
+    for (const Eigen::Vector2d& corner : feature.footprint) bounds_.extend(corner);
+  }
+  bool covers(const Eigen::Vector2d& point) const {
+    return bounds_.exteriorDistance(point) <= kGrowth &&
+           distance(feature_->footprint, point) <= kGrowth;
+  }
+  const TerrainFeature* feature() const { return feature_; }
+
+private:
+  const TerrainFeature* feature_;
+  Eigen::AlignedBox2d bounds_;
+};
 
 /// The feature that a cluster belongs to, null for none.
 const TerrainFeature* feature_of(const Cluster& cluster, const ClusteredPoints& found,
-                                 std::span<const TerrainFeature> features) {
+                                 std::span<const CoveredGround> grounds) {
   const Eigen::Vector2d middle(static_cast<double>(cluster.box.center_x),
                                static_cast<double>(cluster.box.center_y));
-  for (const TerrainFeature& feature : features) {
-    if (covers(feature, middle)) return &feature;
+  for (const CoveredGround& ground : grounds) {
+    if (ground.covers(middle)) return ground.feature();
   }
   const auto members = found.clusters.members(cluster);
   const PointCloud& points = found.points.points;
-  for (const TerrainFeature& feature : features) {
+  for (const CoveredGround& ground : grounds) {
     const auto covered = std::ranges::count_if(members, [&](std::uint32_t i) {
-      return covers(feature, {static_cast<double>(points.x[i]), static_cast<double>(points.y[i])});
+      return ground.covers({static_cast<double>(points.x[i]), static_cast<double>(points.y[i])});
     });
-    if (2 * static_cast<std::size_t>(covered) >= members.size()) return &feature;
+    if (2 * static_cast<std::size_t>(covered) >= members.size()) return ground.feature();
   }
   return nullptr;
 }
@@ -73,11 +86,15 @@ LabelledClusters label_clusters(const ClusteredPoints& found,
     int id;  // of the feature, 0 for none
     std::uint32_t points;
   };
+  std::vector<CoveredGround> grounds;
+  for (const TerrainFeature& feature : features) {
+    if (feature.kind) grounds.emplace_back(feature);
+  }
   std::vector<Named> all;
   std::vector<std::uint32_t> largest(id_limit(features));
   for (const Cluster& cluster : found.clusters.all()) {
     if (!std::ranges::all_of(cluster.features, [](float f) { return std::isfinite(f); })) continue;
-    const TerrainFeature* feature = feature_of(cluster, found, features);
+    const TerrainFeature* feature = feature_of(cluster, found, grounds);
     if (feature != nullptr && feature->is_small) continue;
     const Label label = label_of(feature, cluster.features);
     const int id = feature != nullptr ? feature->id : 0;

@@ -23,7 +23,7 @@ Mark mark_of(Scene scene) {
   settings.cell = 0.1;
   settings.clear_radius = 1.5;
   const Terrain terrain(settings, 7);
-  Mark mark{scene, terrain.features().size(), terrain.tufts().all().size(), 0, 0, 0};
+  Mark mark{scene, terrain.features().size(), terrain.volumes().all().size(), 0, 0, 0};
   for (std::size_t row = 0; row < terrain.vertices(); ++row) {
     for (std::size_t column = 0; column < terrain.vertices(); ++column) {
       const double weight = 1 + 0.01 * static_cast<double>(row + 2 * column);

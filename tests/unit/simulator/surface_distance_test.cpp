@@ -106,7 +106,7 @@ TEST(SurfaceDistance, OfACloudIsBroughtToTheWorldFirst) {
   const Pose to_world{{0.5, 0, -0.5}, from_roll_pitch_yaw(0, 0, 1)};
   const SurfaceError error = surface_error(terrain, cloud, to_world);
   EXPECT_EQ(error.points, 2U);
-  EXPECT_EQ(error.near_tufts, 0U);
+  EXPECT_EQ(error.near_volumes, 0U);
   EXPECT_NEAR(error.rms(), 0.1, 1e-6);
   EXPECT_TRUE(std::isnan(SurfaceError().rms()));
 }
@@ -115,14 +115,14 @@ TEST(SurfaceDistance, GrassIsNoSurface) {
   TerrainSettings settings = level();
   settings.tuft_cover = 0.1;
   const Terrain terrain(settings, 1);
-  ASSERT_FALSE(terrain.tufts().all().empty());
-  const Tuft& tuft = terrain.tufts().all().front();
+  ASSERT_FALSE(terrain.volumes().all().empty());
+  const Volume& tuft = terrain.volumes().all().front();
   PointCloud cloud(1);
-  cloud.push_back(static_cast<float>(tuft.base.x() + tuft.radius),
-                  static_cast<float>(tuft.base.y()), 0.1F, 0);
+  cloud.push_back(static_cast<float>(tuft.center.x() + tuft.half.x()),
+                  static_cast<float>(tuft.center.y()), 0.1F, 0);
   const SurfaceError error = surface_error(terrain, cloud, Pose());
   EXPECT_EQ(error.points, 0U);
-  EXPECT_EQ(error.near_tufts, 1U);
+  EXPECT_EQ(error.near_volumes, 1U);
 }
 
 }  // namespace

@@ -120,14 +120,16 @@ Block map_block() {
   const auto rms = [](const SceneResult& s) { return s.surface.rms(); };
   const auto level_rms = [](const SceneResult& s) { return s.level.rms(); };
   const auto points = [](const SceneResult& s) { return static_cast<double>(s.surface.points); };
-  const auto grass = [](const SceneResult& s) { return static_cast<double>(s.surface.near_tufts); };
+  const auto grass = [](const SceneResult& s) {
+    return static_cast<double>(s.surface.near_volumes);
+  };
   return {
       "Map points and the true surface, laid onto it by position and yaw, and by roll and pitch "
       "too; points within 0.1 m of a tuft of grass are left out: blades are no surface",
       {{"map_rms_m", 4, rms},
        {"map_rms_level_m", 4, level_rms},
        {"map_points", 0, points},
-       {"near_tufts", 0, grass}}};
+       {"near_plants", 0, grass}}};
 }
 
 Block warning_block(const std::string& what, const std::string& prefix,
