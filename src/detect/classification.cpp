@@ -49,10 +49,19 @@ bool hangs(const Cluster& cluster) {
   return cluster.features[min_height] > kGap && cluster.end - cluster.begin >= kFewest;
 }
 
+/// A bush or a trunk: grass does not grow so high.
+bool is_tall(const Cluster& cluster) {
+  constexpr float kHeight = 1.1F;        // metres
+  constexpr std::uint32_t kFewest = 30;  // points
+  return cluster.features[max_height] > kHeight && cluster.end - cluster.begin >= kFewest;
+}
+
 Prediction classify(const Cluster& cluster, const Network& network) {
-  constexpr float kHangs = 0.9F;
+  constexpr float kInTheWay = 0.9F;
   Prediction prediction = network(cluster.features);
-  if (hangs(cluster)) prediction.positive = std::max(prediction.positive, kHangs);
+  if (hangs(cluster) || is_tall(cluster)) {
+    prediction.positive = std::max(prediction.positive, kInTheWay);
+  }
   return prediction;
 }
 

@@ -147,6 +147,8 @@ void HoleEvidence::collect_cells(std::span<const std::uint32_t> members,
 /// The share of the cells at the rim with ground near them.
 float HoleEvidence::rim_share(const GroundSurface& surface) const {
   constexpr float kNear = 0.35F;  // metres
+  // Where no beams tell, leaves that happen to lie level must not pass for ground.
+  const float least_patch = knows_beams_ ? 0.0F : 1.0F;  // square metres
   const std::size_t columns = surface.columns(), rows = surface.rows();
   const auto reach = static_cast<std::size_t>(std::lround(kNear / surface.cell_size()));
   const auto has_ground_near = [&](std::size_t cell) {
@@ -154,7 +156,8 @@ float HoleEvidence::rim_share(const GroundSurface& surface) const {
     for (std::size_t v = row - std::min(row, reach); v <= std::min(row + reach, rows - 1); ++v) {
       for (std::size_t u = column - std::min(column, reach);
            u <= std::min(column + reach, columns - 1); ++u) {
-        if (surface.is_ground(v * columns + u)) return true;
+        const std::size_t near = v * columns + u;
+        if (surface.is_ground(near) && surface.patch_area(near) >= least_patch) return true;
       }
     }
     return false;
