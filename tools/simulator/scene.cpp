@@ -160,6 +160,18 @@ constexpr std::array<Recipe, kScenes.size()> kRecipes = {{
      {0, 0.1},
      {0, 0.15},
      {3, 1, 1, 2, 2, 1, 2, 1, 2, 2, 2, 3, 1, 1}},
+    {"boulders",
+     {3, 18},
+     0.015,
+     {0, 0.02},
+     kNone,
+     {0.1, 0.4},
+     kNone,
+     kNone,
+     kNone,
+     kNone,
+     kNone,
+     {3, 4, 1, 0, 2, 0, 0, 1, 2, 2, 0, 0, 1, 1}},
 }};
 
 PlantCounts plants_of(Scene scene, std::uint64_t seed) {
@@ -252,6 +264,13 @@ TerrainSettings scene_terrain(Scene scene, double area, std::uint64_t seed) {
   settings.nests = count(recipe.nests);
   settings.weights = recipe.weights;
   settings.undercut = kUndercut.draw(random);
+  if (scene == Scene::boulders) {
+    constexpr Range kCover = {0.2, 0.65};
+    constexpr double kOthers = 0.3;  // share of the rocks and holes of other scenes
+    settings.positive = std::max(static_cast<int>(kOthers * settings.positive), 2);
+    settings.negative = std::max(static_cast<int>(kOthers * settings.negative), 1);
+    settings.boulder_cover = kCover.draw(random);
+  }
   settings.edges = edges_of(scene, seed);
   settings.plants = plants_of(scene, seed);
   return settings;

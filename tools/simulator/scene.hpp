@@ -22,11 +22,12 @@ enum class Scene : std::uint8_t {
   cliff,    ///< cliffs, banks and ditches through the whole scene, wide pits
   kerb,     ///< level and smooth, with kerbs, stairs and drains
   wood,     ///< trees, bushes, uneven ground
-  meadow    ///< tall grass over metres, bushes, hedges
+  meadow,   ///< tall grass over metres, bushes, hedges
+  boulders  ///< a field or a slope of boulders that touch and overlap
 };
-inline constexpr std::array kScenes = {Scene::easy,  Scene::rolling, Scene::rough, Scene::crater,
-                                       Scene::ditch, Scene::grass,   Scene::mixed, Scene::cliff,
-                                       Scene::kerb,  Scene::wood,    Scene::meadow};
+inline constexpr std::array kScenes = {
+    Scene::easy,  Scene::rolling, Scene::rough, Scene::crater, Scene::ditch,  Scene::grass,
+    Scene::mixed, Scene::cliff,   Scene::kerb,  Scene::wood,   Scene::meadow, Scene::boulders};
 std::string_view name_of(Scene scene);
 std::optional<Scene> scene_named(std::string_view name);
 

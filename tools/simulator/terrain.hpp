@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -18,6 +19,7 @@
 
 namespace scree {
 
+class Boulder;
 class GradientNoise;
 struct TerrainThing;
 
@@ -123,6 +125,27 @@ private:
   /// Raises or lowers one vertex. @param at from the middle of the shape  @return by how much
   double raise(std::size_t index, const Shape& shape, const Eigen::Vector2d& at,
                const GradientNoise& grain);
+  void strew_boulders(std::uint64_t seed);
+  /// Puts a boulder on the ground and among those that lie there.
+  void heap(const Boulder& boulder, std::uint16_t part,
+            const std::function<double(const Eigen::Vector2d&)>& unevenness);
+  /// Heights of boulders as far as others do not cover them. @param first index of their features
+  void measure_boulders(std::size_t first, std::span<const Boulder> boulders);
+  /// Calls visit with index and place of the vertices in a square.
+  template <class Visit>
+  void for_each_vertex_near(const Eigen::Vector2d& center, double reach, Visit visit) const {
+    const auto near = [&](double at) {
+      const double vertex =
+          std::clamp((at + half_) / settings_.cell, 0.0, static_cast<double>(vertices_ - 1));
+      return static_cast<std::size_t>(vertex);
+    };
+    for (std::size_t row = near(center.y() - reach); row <= near(center.y() + reach); ++row) {
+      for (std::size_t column = near(center.x() - reach); column <= near(center.x() + reach);
+           ++column) {
+        visit(row * vertices_ + column, Eigen::Vector2d(coordinate(column), coordinate(row)));
+      }
+    }
+  }
   void paint(std::uint64_t seed);
   void shift_origin();
   std::vector<Volume> grow_tufts(std::uint64_t seed) const;

@@ -122,29 +122,19 @@ void Terrain::stamp(const PlacedShape& placed, int before, Random& random) {
   const auto part = static_cast<std::uint16_t>(feature.first_part);
   const GradientNoise grain(Random(random.next()), 2 * shape.reach(),
                             std::max(0.06, 0.4 * shape.reach()));
-  const auto vertex_near = [&](double at) {
-    const double vertex =
-        std::clamp((at + half_) / settings_.cell, 0.0, static_cast<double>(vertices_ - 1));
-    return static_cast<std::size_t>(vertex);
-  };
   const bool rises = is_positive(shape.kind()) || shape.kind() == ShapeKind::mound;
   double ground = 0;
   std::size_t inside = 0;
-  for (std::size_t row = vertex_near(center.y() - shape.reach());
-       row <= vertex_near(center.y() + shape.reach()); ++row) {
-    for (std::size_t column = vertex_near(center.x() - shape.reach());
-         column <= vertex_near(center.x() + shape.reach()); ++column) {
-      const Eigen::Vector2d at = Eigen::Vector2d(coordinate(column), coordinate(row)) - center;
-      const std::size_t index = row * vertices_ + column;
-      const auto ground_here = static_cast<double>(height_[index]);
-      const double extra = raise(index, shape, at, grain);
-      if (!shape.inside(at)) continue;
-      part_[index] = part;
-      ground += ground_here;
-      ++inside;
-      feature.height = rises ? std::max(feature.height, extra) : std::min(feature.height, extra);
-    }
-  }
+  for_each_vertex_near(center, shape.reach(), [&](std::size_t index, const Eigen::Vector2d& place) {
+    const Eigen::Vector2d at = place - center;
+    const auto ground_here = static_cast<double>(height_[index]);
+    const double extra = raise(index, shape, at, grain);
+    if (!shape.inside(at)) return;
+    part_[index] = part;
+    ground += ground_here;
+    ++inside;
+    feature.height = rises ? std::max(feature.height, extra) : std::min(feature.height, extra);
+  });
   ground /= static_cast<double>(std::max<std::size_t>(inside, 1));
   feature.center = {center.x(), center.y(), ground + feature.height / 2};
   features_.push_back(std::move(feature));

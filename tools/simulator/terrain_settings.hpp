@@ -45,6 +45,7 @@ struct TerrainSettings {
   int nests = 0;             ///< of rocks, holes and smooth ones: one inside a hollow or on a mound
   double undercut = 0;       ///< share of the rocks that are narrower at the ground than above
   ShapeWeights weights = kRocksAndHoles;
+  double boulder_cover = 0;  ///< share of the ground under boulders that touch and overlap
   EdgeCounts edges;
   PlantCounts plants;
   double placed_within = 18;  ///< features lie in the square from -this to this, or, where there is
