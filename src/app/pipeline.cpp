@@ -82,7 +82,9 @@ const ObstacleList& Pipeline::process(const Sweep& sweep) {
 
 void Pipeline::detect_in_map() {
   const RollingMap& map = mapper_->map();
-  map_detector_.detect(map.seen_cloud(), found_, timer_);
+  SeenCloud cloud = map.seen_cloud();
+  cloud.robot = (mapper_->pose().translation - map.origin()).head<2>().cast<float>();
+  map_detector_.detect(cloud, found_, timer_);
   const Pose cloud_in_map{map.origin(), Eigen::Quaterniond::Identity()};
   for (Obstacle& obstacle : found_) move_into_parent(cloud_in_map, obstacle);
   tracker_.update(
@@ -97,8 +99,8 @@ void Pipeline::detect_in_sweep(const Sweep& sweep) {
   deskew(sweep, lidar_, still_, sweep_);
   timer_.done(Stage::motion);
   sweep_detector_.detect(
-      {.points = sweep_.points, .beams = {}, .origins = sweep_.origins, .passing = {}}, found_,
-      timer_);
+      {.points = sweep_.points, .origins = sweep_.origins, .robot = Eigen::Vector2f::Zero()},
+      found_, timer_);
   sweep_tracker_.update(
       list_.stamp_ns, Eigen::Vector3d::Zero(), {found_.data(), found_.size()},
       [](const Eigen::Vector3d&) { return Occupancy::unknown; }, list_.obstacles);

@@ -1,6 +1,8 @@
 #include "scree/detect/clusters.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <utility>
 
 #include "scree/detect/label.hpp"
@@ -8,7 +10,7 @@
 namespace scree {
 
 Clusters::Clusters(std::size_t max_points)
-    : clusters_(max_points), members_(max_points), place_(max_points) {}
+    : clusters_(max_points + kMostParts), members_(max_points), place_(max_points) {}
 
 void Clusters::gather(const CandidatePoints& edges, std::span<const std::uint32_t> labels,
                       std::span<const std::uint32_t> sizes, std::uint32_t min_size) {
@@ -41,6 +43,53 @@ void Clusters::gather(const CandidatePoints& edges, std::span<const std::uint32_
     cluster.lowest = edges.points.z[low];
     cluster.highest = edges.points.z[high];
   }
+}
+
+void Clusters::part_around(const Eigen::Vector2f& place, PointView points, std::uint32_t min_size) {
+  const std::size_t before = clusters_.size();
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < before; ++i) {
+    const Cluster whole = clusters_[i];
+    if (whole.box.distances()(place.x(), place.y()) > 0) {
+      clusters_[kept++] = whole;
+      continue;
+    }
+    const float c = std::cos(whole.box.yaw), s = std::sin(whole.box.yaw);
+    const auto is_left = [&](std::uint32_t k) {
+      return (points.y[k] - place.y()) * c - (points.x[k] - place.x()) * s > 0;
+    };
+    const auto is_ahead = [&](std::uint32_t k) {
+      return (points.x[k] - place.x()) * c + (points.y[k] - place.y()) * s > 0;
+    };
+    const auto first = members_.begin() + whole.begin, last = members_.begin() + whole.end;
+    const auto middle = std::stable_partition(first, last, is_left);
+    const std::array bounds = {first, std::stable_partition(first, middle, is_ahead), middle,
+                               std::stable_partition(middle, last, is_ahead), last};
+    for (std::size_t k = 0; k + 1 < bounds.size(); ++k) {
+      if (bounds[k + 1] - bounds[k] < static_cast<std::ptrdiff_t>(min_size)) continue;
+      add_part(whole, static_cast<std::uint32_t>(bounds[k] - members_.begin()),
+               static_cast<std::uint32_t>(bounds[k + 1] - members_.begin()), points);
+    }
+  }
+  std::copy(clusters_.begin() + before, clusters_.end(), clusters_.begin() + kept);
+  clusters_.resize(kept + clusters_.size() - before);
+}
+
+/// Adds a part of a cluster. Its box has the direction of the whole, so that it ends where the part
+/// does.
+void Clusters::add_part(const Cluster& whole, std::uint32_t begin, std::uint32_t end,
+                        PointView points) {
+  Cluster part;
+  part.begin = begin;
+  part.end = end;
+  part.size = end - begin;
+  const auto indices = members(part);
+  part.box = box_along(whole.box.yaw, points, indices);
+  const auto [low, high] =
+      std::ranges::minmax(indices, {}, [&](std::uint32_t i) { return points.z[i]; });
+  part.lowest = points.z[low];
+  part.highest = points.z[high];
+  clusters_.push_back(part);
 }
 
 Features measure(const CandidatePoints& edges, std::span<const std::uint32_t> members) {

@@ -68,6 +68,10 @@ ClusteredPoints EdgeMethod::find(const PointCloud& points, const SeenCloud& clou
   timer.done(Stage::suppression);
   CandidatePoints& edges = suppression_ ? kept_ : edges_;
   cluster(edges, counts, timer);
+  if (cloud.robot) {
+    clusters_.part_around(*cloud.robot, edges.points,
+                          static_cast<std::uint32_t>(settings_.min_cluster_size));
+  }
   timer.done(Stage::clusters);
   const bool knows_beams = !cloud.origins.empty();
   if (knows_beams) sectors_.build(points, cloud.origins.front());

@@ -65,6 +65,10 @@ ClusteredPoints SurfaceMethod::find(const PointCloud& points, const SeenCloud& c
                          euclidean_, kept_);
   timer.done(Stage::suppression);
   cluster(counts);
+  if (cloud.robot) {
+    clusters_.part_around(*cloud.robot, kept_.points,
+                          static_cast<std::uint32_t>(settings_.min_cluster_size));
+  }
   timer.done(Stage::clusters);
   measure_clusters(points);
   timer.done(Stage::features);

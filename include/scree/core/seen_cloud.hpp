@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 
 #include "scree/core/beam_count.hpp"
@@ -19,9 +20,10 @@ struct PassingBeam {
 /// nothing is known.
 struct SeenCloud {
   PointView points;
-  std::span<const BeamCount> beams;          ///< what came to each point
-  std::span<const Eigen::Vector3f> origins;  ///< where each point was seen from; or one for all
-  std::span<const PassingBeam> passing;
+  std::span<const BeamCount> beams{};          ///< what came to each point
+  std::span<const Eigen::Vector3f> origins{};  ///< where each point was seen from; or one for all
+  std::span<const PassingBeam> passing{};
+  std::optional<Eigen::Vector2f> robot{};  ///< where it stands
 
   /// @pre origins are known
   const Eigen::Vector3f& origin_of(std::size_t point) const {

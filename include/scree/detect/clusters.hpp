@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <span>
 
@@ -32,6 +33,10 @@ public:
   void gather(const CandidatePoints& edges, std::span<const std::uint32_t> labels,
               std::span<const std::uint32_t> sizes, std::uint32_t min_size);
 
+  /// Parts each cluster whose box covers a place into the quarters around that place, those of at
+  /// least `min_size` points: nothing stands where the robot does.
+  void part_around(const Eigen::Vector2f& place, PointView points, std::uint32_t min_size);
+
   std::span<Cluster> all() { return clusters_; }
   std::span<const Cluster> all() const { return clusters_; }
   /// Indices of a cluster's points among the edge points.
@@ -41,6 +46,10 @@ public:
   }
 
 private:
+  static constexpr std::size_t kMostParts = 4;  // more than a cluster was
+
+  void add_part(const Cluster& whole, std::uint32_t begin, std::uint32_t end, PointView points);
+
   FixedVector<Cluster> clusters_;
   FixedVector<std::uint32_t> members_, place_;
 };

@@ -30,7 +30,7 @@ public:
   void detect(const SeenCloud& cloud, FixedVector<Obstacle>& obstacles, StageTimer& timer);
   void detect(PointView cloud, FixedVector<Obstacle>& obstacles) {
     StageTimer none;
-    detect({.points = cloud, .beams = {}, .origins = {}, .passing = {}}, obstacles, none);
+    detect({.points = cloud}, obstacles, none);
   }
 
   // Of the last call.

@@ -32,4 +32,7 @@ struct OrientedBox {
 /// @pre `indices` is not empty
 OrientedBox smallest_box(PointView points, std::span<const std::uint32_t> indices);
 
+/// The rectangle around them in one direction, radians.
+OrientedBox box_along(float yaw, PointView points, std::span<const std::uint32_t> indices);
+
 }  // namespace scree

@@ -34,7 +34,7 @@ Features features_of(PointView cloud, std::span<const BeamCount> beams = {}) {
       Network());
   FixedVector<Obstacle> unused(16);
   StageTimer timer;
-  detector.detect({.points = cloud, .beams = beams, .origins = {}, .passing = {}}, unused, timer);
+  detector.detect({.points = cloud, .beams = beams}, unused, timer);
   const auto clusters = detector.clustered().clusters.all();
   EXPECT_FALSE(clusters.empty());
   if (clusters.empty()) return {};

@@ -83,12 +83,13 @@ void detect_in_cloud(const DetectOptions& options) {
   ObstacleList list(static_cast<std::size_t>(memory.obstacles));
   const Eigen::Vector3f viewpoint = viewpoint_of(options, *cloud);
   const bool is_known = !options.viewpoint.empty() || could_be_seen_from(viewpoint, *cloud);
+  SeenCloud seen{.points = *cloud};
+  if (is_known) {
+    seen.origins = {&viewpoint, 1};
+    seen.robot = viewpoint.head<2>();
+  }
   StageTimer none;
-  detector->detect({.points = *cloud,
-                    .beams = {},
-                    .origins = {&viewpoint, is_known ? std::size_t{1} : 0},
-                    .passing = {}},
-                   list.obstacles, none);
+  detector->detect(seen, list.obstacles, none);
   writer.write(list);
   writer.finish();
   warn_of_losses(detector->counts(), options.input.string());
