@@ -35,15 +35,15 @@ Evidence BeamSectors::of(std::span<const std::uint32_t> members, const PointClou
     ++below;
     if (goes_into(points.x[i], points.y[i], points.z[i], ground)) ++into;
   }
-  return into >= kFewest && 2 * into > below ? Evidence::inside : Evidence::none;
+  return into >= kFewest && 5 * into > 2 * below ? Evidence::inside : Evidence::none;
 }
 
 /// Whether the beam that ended in a point passed the level of the ground between ground that was
 /// seen and the point, and nothing was seen there.
 bool BeamSectors::goes_into(float x, float y, float z, float ground) const {
-  constexpr float kLevel = 0.15F;               // of the ground before it, metres
-  constexpr float kGap = 1, kGapShare = 0.35F;  // between rings: metres, share of the range
-  constexpr float kClear = 0.1F;                // of rounded rims, metres
+  constexpr float kLevel = 0.1F, kSlope = 0.15F;  // of the ground before it: metres, metres a metre
+  constexpr float kGap = 1, kGapShare = 0.35F;    // between rings: metres, share of the range
+  constexpr float kClear = 0.1F;                  // of rounded rims, metres
   if (ground >= origin_.z()) return false;
   const float range = std::hypot(x - origin_.x(), y - origin_.y());
   const float crossing = range * (origin_.z() - ground) / (origin_.z() - z);
@@ -52,7 +52,8 @@ bool BeamSectors::goes_into(float x, float y, float z, float ground) const {
   bool has_ground = false;
   for (std::uint32_t i = begin_[sector]; i < begin_[sector + 1]; ++i) {
     const Entry& seen = sorted_[i];
-    const bool is_level = std::abs(seen.z - ground) < kLevel;
+    const float off = kLevel + kSlope * std::abs(crossing - seen.range);
+    const bool is_level = std::abs(seen.z - ground) < off;
     if (is_level && seen.range > nearest && seen.range < crossing + kClear) has_ground = true;
     const bool is_between = seen.range > crossing + kClear && seen.range < range - kClear;
     if (is_between && seen.z > ground - kClear / 2) return false;
