@@ -19,7 +19,7 @@ Obstacle obstacle_of(const Cluster& cluster, const Prediction& prediction, float
   obstacle.yaw = cluster.box.yaw;
   obstacle.height = height;
   obstacle.points = cluster.end - cluster.begin;
-  obstacle.evidence = cluster.evidence;
+  if (obstacle.kind == ObstacleKind::negative) obstacle.evidence = cluster.evidence;
   return obstacle;
 }
 
