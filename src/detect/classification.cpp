@@ -44,16 +44,20 @@ Obstacle obstacle_of(const GroundEdge& edge) {
 
 /// What hangs above ground that is seen below it stands in the way, whatever else is known of it.
 bool hangs(const Cluster& cluster) {
+  constexpr float kGround = 0.3F;        // share of the place around it
   constexpr float kGap = 0.25F;          // metres below it
   constexpr std::uint32_t kFewest = 12;  // points: fewer may be dust
-  return cluster.features[min_height] > kGap && cluster.end - cluster.begin >= kFewest;
+  return cluster.features[min_height] > kGap && cluster.features[ground_share] > kGround &&
+         cluster.end - cluster.begin >= kFewest;
 }
 
 /// A bush or a trunk: grass does not grow so high.
 bool is_tall(const Cluster& cluster) {
+  constexpr float kUpright = 0.4F;       // metres from its lowest point to its highest
   constexpr float kHeight = 1.1F;        // metres
   constexpr std::uint32_t kFewest = 30;  // points
-  return cluster.features[max_height] > kHeight && cluster.end - cluster.begin >= kFewest;
+  return cluster.features[max_height] > kHeight && cluster.highest - cluster.lowest > kUpright &&
+         cluster.end - cluster.begin >= kFewest;
 }
 
 Prediction classify(const Cluster& cluster, const Network& network) {

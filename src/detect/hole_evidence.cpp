@@ -52,7 +52,7 @@ void HoleEvidence::follow_passing(const PassingBeam& beam, const GroundSurface& 
     if (at.z() > surface.height(at.x(), at.y())) continue;
     const float way = static_cast<float>(i) * surface.cell_size();
     const float below = std::min(beam.range - way, kBelowFor);
-    if (below > 0) follow(beam.origin, at + below * beam.direction, surface);
+    if (below > 0) mark_lost(at, at + below * beam.direction, surface);
     return;
   }
 }

@@ -1,0 +1,137 @@
+#include "scree/detect/ground_edges.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+#include <vector>
+
+namespace scree {
+namespace {
+
+constexpr std::size_t kPoints = 60'000, kCells = 1 << 16;
+constexpr GroundSurfaceSettings kSettings{.cell_size = 0.08F,
+                                          .cell_points = 2.15F,
+                                          .max_slope = 0.34F,
+                                          .tolerance = 0.1F,
+                                          .trend_reach = 0};
+
+/// 12 x 10 m of this shape, seen evenly, NaN: nothing is seen; with noise of 5 mm.
+PointCloud seen(const std::function<float(float, float)>& height) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> along(-8, 4), across(-5, 5);
+  std::normal_distribution<float> noise(0, 0.005F);
+  PointCloud cloud(kPoints + 2);
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    const float x = along(random), y = across(random), z = height(x, y);
+    if (!std::isnan(z)) cloud.push_back(x, y, z + noise(random), 0);
+  }
+  return cloud;
+}
+
+class GroundEdgesTest : public testing::Test {
+protected:
+  std::span<const GroundEdge> edges_of(PointView cloud, std::span<const PassingBeam> lost = {}) {
+    surface_.build(cloud, kSettings);
+    const Eigen::Vector3f sensor(-6, 0, 1);
+    SeenCloud with_beams{.points = cloud};
+    if (!lost.empty()) {
+      with_beams.origins = {&sensor, 1};
+      with_beams.passing = lost;
+    }
+    evidence_.build(with_beams, surface_);
+    edges_.find(surface_, evidence_);
+    return edges_.all();
+  }
+
+  GroundSurface surface_{kPoints + 2, kCells};
+  HoleEvidence evidence_{kCells};
+  GroundEdges edges_{kCells};
+};
+
+TEST_F(GroundEdgesTest, AStepDownIsOneEdgeBeyondTheGround) {
+  for (const float step : {-0.2F, -0.5F, -1.5F}) {
+    const auto edges = edges_of(seen([&](float x, float) { return x < 2 ? 0.0F : step; }));
+    ASSERT_EQ(edges.size(), 1U) << step;
+    EXPECT_NEAR(edges[0].step, step, 0.05) << step;
+    EXPECT_NEAR(edges[0].ground, 0, 0.02) << step;
+    EXPECT_GT(edges[0].box.length, 9) << step;
+    EXPECT_GE(edges[0].box.width, 0.3F) << step;
+    EXPECT_NEAR(edges[0].box.center_x, 2.15, 0.15) << step;
+    EXPECT_EQ(edges[0].evidence, Evidence::edge) << step;
+  }
+}
+
+TEST_F(GroundEdgesTest, AStepUpToLevelGroundIsOneEdge) {
+  // The lower ground is the larger one.
+  const auto edges = edges_of(seen([](float x, float) { return x < 2 ? 0.0F : 0.3F; }));
+  ASSERT_EQ(edges.size(), 1U);
+  EXPECT_NEAR(edges[0].step, 0.3, 0.05);
+  EXPECT_GT(edges[0].box.length, 9);
+}
+
+TEST_F(GroundEdgesTest, LowStepsSlopesAndHollowsAreNone) {
+  EXPECT_TRUE(edges_of(seen([](float x, float) { return x < 2 ? 0.0F : -0.1F; })).empty());
+  EXPECT_TRUE(edges_of(seen([](float x, float) { return 0.33F * x; })).empty());
+  EXPECT_TRUE(edges_of(seen([](float x, float) { return -0.33F * std::max(x, 0.0F); })).empty());
+  for (const float sign : {-1.0F, 1.0F}) {
+    EXPECT_TRUE(edges_of(seen([&](float x, float y) {
+                  const float share = std::min(std::hypot(x, y) / 2.5F, 1.0F);
+                  return sign * 0.2F * (1 + std::cos(3.14159F * share));
+                })).empty())
+        << sign;
+  }
+}
+
+TEST_F(GroundEdgesTest, ARockOnLevelGroundIsNone) {
+  EXPECT_TRUE(edges_of(seen([](float x, float y) {
+                return std::abs(x) < 0.5F && std::abs(y) < 0.4F ? 0.6F : 0.0F;
+              })).empty());
+}
+
+TEST_F(GroundEdgesTest, ReflectionsBelowSeenGroundAreNone) {
+  PointCloud cloud = seen([](float, float) { return 0.0F; });
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> place(0, 1), depth(-1.6F, -0.35F);
+  for (int i = 0; i < 100; ++i) cloud.y[static_cast<std::size_t>(i)] = place(random);
+  for (std::size_t i = 0; i < 100; ++i) {
+    cloud.x[i] = place(random);
+    cloud.z[i] = depth(random);
+  }
+  EXPECT_TRUE(edges_of(cloud).empty());
+}
+
+TEST_F(GroundEdgesTest, ACornerIsPartedSoThatItsBoxesHoldLittleGround) {
+  // The ground ends at a corner at (2, 3).
+  const auto edges = edges_of(seen([](float x, float y) { return x < 2 && y < 3 ? 0.0F : -0.6F; }));
+  ASSERT_GE(edges.size(), 2U);
+  for (const GroundEdge& edge : edges) {
+    EXPECT_LT(edge.step, -0.5);
+    EXPECT_LT(edge.box.width, 2.5F);
+  }
+}
+
+TEST_F(GroundEdgesTest, WhereNothingIsSeenLostBeamsTellOfAShadow) {
+  const auto ground = [](float x, float) { return x < 2 ? 0.0F : std::nanf(""); };
+  PointCloud cloud = seen(ground);
+  EXPECT_TRUE(edges_of(cloud).empty()) << "beams that are not known say nothing";
+  std::vector<PassingBeam> lost;
+  const Eigen::Vector3f sensor(-6, 0, 1);
+  for (float y = -4; y < 4; y += 0.02F) {
+    for (float x = 2.1F; x < 3.5F; x += 0.2F) {
+      lost.push_back({sensor, (Eigen::Vector3f(x, y, 0) - sensor).normalized(), 1000});
+    }
+  }
+  // The raster ends with the points; two far beyond widen it.
+  cloud.push_back(6, -5, 0, 0);
+  cloud.push_back(6, 5, 0, 0);
+  const auto edges = edges_of(cloud, lost);
+  ASSERT_EQ(edges.size(), 1U);
+  EXPECT_EQ(edges[0].evidence, Evidence::shadow);
+  EXPECT_LT(edges[0].step, -0.15);
+  EXPECT_NEAR(edges[0].box.center_x, 2.2, 0.3);
+}
+
+}  // namespace
+}  // namespace scree
