@@ -59,6 +59,7 @@ bool Beam::add(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, 
     // The normal is that of a rock's top.
     if (air <= 0) facing = std::max(-direction.dot(terrain_.normal(hit.x(), hit.y())), 0.0);
     echo.reflectivity = terrain_.reflectivity(hit.x(), hit.y());
+    if (echo.reflectivity == 0) return false;
     // On the very brink of a hole, or on a rock's skirt, nothing is seen of it yet.
     constexpr double kTelling = 0.05;
     const double relief = is_below ? 0 : terrain_.relief(hit.x(), hit.y());

@@ -29,6 +29,7 @@ public:
       weight_[cell] = area * wall;
       const double away = std::min(middle_of(cell).norm() / terrain.half_size(), 1.0);
       weight_[cell] *= std::pow(settings.rim_density, away);
+      if (terrain.reflectivity(middle_of(cell).x(), middle_of(cell).y()) == 0) weight_[cell] = 0;
       if (settings.density_spread == 1) continue;
       const Eigen::Vector2d at = middle_of(cell);
       const double share = std::clamp(looked_at(at.x(), at.y()), -0.5, 0.5);
@@ -79,10 +80,9 @@ private:
       const Eigen::Vector2d away(std::cos(angle), std::sin(angle));
       const bool chosen = random.chance(0.4);
       const double share = random.uniform(0.4, 1.2);
-      if (!chosen || feature.is_edge) continue;
+      if (!chosen || !feature.shape) continue;
       if (feature.height > kTall) {
-        constexpr double kTallest = 2;  // whose shadow a robot that drives on does not see into
-        hide_behind(feature, away, share * std::min(feature.height, kTallest));
+        hide_behind(feature, away, share * feature.height);
       } else if (feature.shape == ShapeKind::pit || feature.shape == ShapeKind::pothole) {
         hide_floor(feature, away);
       }
@@ -96,7 +96,7 @@ private:
     const bool chosen = random.chance(0.7);
     const bool all = random.chance(0.3);
     const double shadow = random.uniform(0.5, 3) * -edge.height();
-    if (!chosen || edge.height() > 0 || edge.is_ground()) return;
+    if (!chosen || edge.height() > 0 || edge.is_minor()) return;
     const double reach = all ? std::numeric_limits<double>::infinity() : shadow;
     for (std::size_t cell = 0; cell < weight_.size(); ++cell) {
       const double beyond = edge.beyond(middle_of(cell));

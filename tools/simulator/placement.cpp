@@ -37,10 +37,7 @@ bool FreeGround::has_room(const Footprint& footprint, double gap) const {
     return false;
   }
   return std::ranges::none_of(taken_, [&](const Taken& taken) {
-    const bool is_far = std::ranges::all_of(footprint, [&](const Eigen::Vector2d& corner) {
-      return (corner - taken.center).norm() > taken.reach + gap;
-    });
-    return (!is_far || contains(footprint, taken.center)) &&
+    return distance(footprint, taken.center) < taken.reach + gap &&
            distance(footprint, taken.footprint) < gap;
   });
 }

@@ -172,7 +172,70 @@ constexpr std::array<Recipe, kScenes.size()> kRecipes = {{
      kNone,
      kNone,
      {3, 4, 1, 0, 2, 0, 0, 1, 2, 2, 0, 0, 1, 1}},
+    {"street",
+     {0.2, 3},
+     0.004,
+     kNone,
+     kNone,
+     {0.1, 0.4},
+     {0, 0.1},
+     {0, 0.2},
+     {0, 0.1},
+     {0, 0.05},
+     kNone,
+     {1, 3, 1, 0, 0, 1, 6, 0, 3, 3, 0, 1, 1, 1}},
+    {"quarry",
+     {1, 12},
+     0.02,
+     {0.005, 0.03},
+     {0, 0.05},
+     {0.1, 0.4},
+     {0.1, 0.6},
+     {0, 0.6},
+     {0, 0.2},
+     {0, 0.1},
+     {0, 0.1},
+     {3, 4, 3, 2, 1, 2, 2, 1, 2, 2, 2, 1, 1, 1}},
 }};
+
+StructureCounts structures_of(Scene scene, std::uint64_t seed) {
+  Random random(seed, 0x5CC);
+  const auto up_to = [&](std::size_t most) { return static_cast<int>(random.index(most + 1)); };
+  StructureCounts structures;
+  switch (scene) {
+    case Scene::street:
+      structures.facades = 1 + up_to(2);
+      structures.fences = up_to(3);
+      structures.cars = up_to(4);
+      structures.poles = up_to(5);
+      structures.booms = up_to(2);
+      structures.debris = up_to(4);
+      break;
+    case Scene::quarry:
+      structures.fences = up_to(1);
+      structures.poles = up_to(2);
+      structures.booms = 1 + up_to(4);
+      structures.debris = 3 + up_to(12);
+      break;
+    case Scene::wood:
+    case Scene::meadow:
+      structures.fences = up_to(1);
+      structures.booms = up_to(2);
+      break;
+    default:
+      break;
+  }
+  return structures;
+}
+
+DiggingCounts diggings_of(Scene scene, std::uint64_t seed) {
+  if (scene != Scene::quarry) return {};
+  Random random(seed, 0x5CB);
+  DiggingCounts diggings;
+  diggings.rimmed_craters = 2 + static_cast<int>(random.index(7));
+  diggings.ponds = static_cast<int>(random.index(3));
+  return diggings;
+}
 
 PlantCounts plants_of(Scene scene, std::uint64_t seed) {
   Random random(seed, 0x5CD);
@@ -216,6 +279,18 @@ EdgeCounts edges_of(Scene scene, std::uint64_t seed) {
       add(0.35, edges.stairs);
       add(0.25, edges.ditches);
       add(0.1, edges.cliffs);
+      break;
+    case Scene::street:
+      add(0.8, edges.kerbs);
+      add(0.5, edges.kerbs);
+      add(0.15, edges.stairs);
+      break;
+    case Scene::quarry:
+      add(0.3, edges.cliffs);
+      add(0.4, edges.banks);
+      add(0.2, edges.pits);
+      add(0.6, edges.ruts);
+      add(0.4, edges.ruts);
       break;
     default:
       break;
@@ -273,6 +348,8 @@ TerrainSettings scene_terrain(Scene scene, double area, std::uint64_t seed) {
   }
   settings.edges = edges_of(scene, seed);
   settings.plants = plants_of(scene, seed);
+  settings.structures = structures_of(scene, seed);
+  settings.diggings = diggings_of(scene, seed);
   return settings;
 }
 

@@ -12,22 +12,25 @@ namespace scree {
 
 /// The kinds of country that a simulated robot drives through.
 enum class Scene : std::uint8_t {
-  easy,     ///< nearly level and smooth
-  rolling,  ///< slopes to 15 degrees, mounds and hollows
-  rough,    ///< uneven by several centimetres, stones and dents
-  crater,   ///< craters, pits and potholes, some inside hollows
-  ditch,    ///< ditches, ledges and logs
-  grass,    ///< tufts that light passes through
-  mixed,    ///< some of all these
-  cliff,    ///< cliffs, banks and ditches through the whole scene, wide pits
-  kerb,     ///< level and smooth, with kerbs, stairs and drains
-  wood,     ///< trees, bushes, uneven ground
-  meadow,   ///< tall grass over metres, bushes, hedges
-  boulders  ///< a field or a slope of boulders that touch and overlap
+  easy,      ///< nearly level and smooth
+  rolling,   ///< slopes to 15 degrees, mounds and hollows
+  rough,     ///< uneven by several centimetres, stones and dents
+  crater,    ///< craters, pits and potholes, some inside hollows
+  ditch,     ///< ditches, ledges and logs
+  grass,     ///< tufts that light passes through
+  mixed,     ///< some of all these
+  cliff,     ///< cliffs, banks and ditches through the whole scene, wide pits
+  kerb,      ///< level and smooth, with kerbs, stairs and drains
+  wood,      ///< trees, bushes, uneven ground
+  meadow,    ///< tall grass over metres, bushes, hedges
+  boulders,  ///< a field or a slope of boulders that touch and overlap
+  street,    ///< facades, walls, fences, kerbs, cars and poles on level ground
+  quarry     ///< craters with rims, ponds, ruts, debris, booms, edges
 };
 inline constexpr std::array kScenes = {
-    Scene::easy,  Scene::rolling, Scene::rough, Scene::crater, Scene::ditch,  Scene::grass,
-    Scene::mixed, Scene::cliff,   Scene::kerb,  Scene::wood,   Scene::meadow, Scene::boulders};
+    Scene::easy,   Scene::rolling,  Scene::rough,  Scene::crater, Scene::ditch,
+    Scene::grass,  Scene::mixed,    Scene::cliff,  Scene::kerb,   Scene::wood,
+    Scene::meadow, Scene::boulders, Scene::street, Scene::quarry};
 std::string_view name_of(Scene scene);
 std::optional<Scene> scene_named(std::string_view name);
 

@@ -51,6 +51,7 @@ Terrain::Terrain(const TerrainSettings& settings, std::uint64_t seed)
   roughen_ground(seed);
   cut_edges(seed);
   place_features(seed);
+  dig(seed);
   strew_boulders(seed);
   paint(seed);
   shift_origin();

@@ -31,6 +31,7 @@ struct TerrainFeature {
   std::optional<ObstacleKind> kind;  ///< none: no obstacle
   int partner = 0;                   ///< id of the obstacle 0.3-0.6 m beside it, 0 for none
   bool is_small = false;             ///< a stone or dent: finding it is neither asked for nor wrong
+  bool is_dark = false;              ///< light that meets it does not come back
   bool is_edge = false;              ///< where the ground ends or steps: see TerrainEdge
   std::size_t first_part = 0;        ///< of those that it is made of
   std::size_t parts = 1;             ///< of a long one each a metre long
@@ -81,7 +82,7 @@ public:
   /// How far a place is from ground and rocks straight up and down, metres; below zero inside them.
   double clearance(const Eigen::Vector3d& at) const;
   Eigen::Vector3d normal(double x, double y) const;
-  /// As Velodyne calibrates it, 0..255.
+  /// As Velodyne calibrates it, 0..255; 0 where no light comes back.
   double reflectivity(double x, double y) const;
   /// Id of the feature whose footprint covers the place, 0 for none.
   int feature_at(double x, double y) const { return parts_[part_at(x, y)].feature; }
@@ -125,10 +126,17 @@ private:
   /// Raises or lowers one vertex. @param at from the middle of the shape  @return by how much
   double raise(std::size_t index, const Shape& shape, const Eigen::Vector2d& at,
                const GradientNoise& grain);
+  using Relief = std::function<double(const Eigen::Vector2d&)>;
+  void dig(std::uint64_t seed);
+  /// Adds to the ground, and a negative feature. @param extra_at metres, what is added
+  TerrainFeature& reshape(const Eigen::Vector2d& center, Footprint footprint, double reach,
+                          const Relief& extra_at);
+  /// @param radius_at distance from its middle, 1 on its shore
+  void fill_pond(const Eigen::Vector2d& center, Footprint footprint, double reach,
+                 const Relief& radius_at);
   void strew_boulders(std::uint64_t seed);
   /// Puts a boulder on the ground and among those that lie there.
-  void heap(const Boulder& boulder, std::uint16_t part,
-            const std::function<double(const Eigen::Vector2d&)>& unevenness);
+  void heap(const Boulder& boulder, std::uint16_t part, const Relief& unevenness);
   /// Heights of boulders as far as others do not cover them. @param first index of their features
   void measure_boulders(std::size_t first, std::span<const Boulder> boulders);
   /// Calls visit with index and place of the vertices in a square.

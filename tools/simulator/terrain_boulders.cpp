@@ -70,8 +70,7 @@ void Terrain::strew_boulders(std::uint64_t seed) {
   measure_boulders(others, named);
 }
 
-void Terrain::heap(const Boulder& boulder, std::uint16_t part,
-                   const std::function<double(const Eigen::Vector2d&)>& unevenness) {
+void Terrain::heap(const Boulder& boulder, std::uint16_t part, const Relief& unevenness) {
   for_each_vertex_near(boulder.center(), boulder.reach(),
                        [&](std::size_t index, const Eigen::Vector2d& at) {
                          const auto top = static_cast<float>(boulder.top(at, unevenness(at)));

@@ -33,8 +33,8 @@ double signed_size(double size, double share_down, Random& random) {
 }  // namespace
 
 std::string_view name_of(TerrainEdgeKind kind) {
-  constexpr std::array<std::string_view, 7> kNames = {"cliff", "kerb",   "bank",    "stairs",
-                                                      "ditch", "furrow", "wide_pit"};
+  constexpr std::array<std::string_view, 8> kNames = {"cliff", "kerb", "bank",   "stairs",
+                                                      "ditch", "rut",  "furrow", "wide_pit"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 
@@ -91,6 +91,11 @@ void TerrainEdge::draw_profile(Random& random) {
       width_ = random.uniform(0.4, 2.4);
       run_ = width_ * random.uniform(0.15, 0.5);
       break;
+    case TerrainEdgeKind::rut:
+      height_ = -random.uniform(0.05, kLeastHeight);
+      width_ = random.uniform(0.2, 0.4);
+      run_ = width_ / 3;
+      break;
     case TerrainEdgeKind::furrow:
       height_ = -random.uniform(0.06, kLeastHeight);
       width_ = random.uniform(0.3, 0.5);
@@ -115,7 +120,8 @@ void TerrainEdge::draw_line(std::span<const Eigen::Vector2d> way, double off, do
     wave_rate_ = kTurn / random.uniform(8, 20);
     wave_phase_ = random.uniform(0, kTurn);
   }
-  if (random.chance(0.3) && may_bend && kind_ != TerrainEdgeKind::furrow) {
+  if (random.chance(0.3) && may_bend && kind_ != TerrainEdgeKind::furrow &&
+      kind_ != TerrainEdgeKind::rut) {
     corner_ = std::copysign(std::tan(radians(random.uniform(15, 45))), random.uniform(-1, 1));
   }
   // So wide that the strip beside it does not cross itself.
@@ -189,6 +195,7 @@ double TerrainEdge::profile(double beyond) const {
   if (beyond <= 0) return 0;
   switch (kind_) {
     case TerrainEdgeKind::ditch:
+    case TerrainEdgeKind::rut:
     case TerrainEdgeKind::furrow:
       return height_ * smooth_step(0, run_, beyond) *
              (1 - smooth_step(width_ - run_, width_, beyond));
@@ -289,6 +296,7 @@ public:
     add(TerrainEdgeKind::ditch, edges.ditches);
     add(TerrainEdgeKind::bank, edges.banks);
     for (int i = 0; i < edges.ploughed; ++i) plough();
+    for (int i = 0; i < edges.ruts; ++i) roll();
     add(TerrainEdgeKind::pit, edges.pits);
     return std::move(edges_);
   }
@@ -319,6 +327,15 @@ private:
     const double apart = first.width() + random_.uniform(0.1, 0.3);
     const int count = 3 + static_cast<int>(random_.index(10));
     for (int i = 0; i < count; ++i) edges_.push_back(first.beside(i * apart));
+  }
+
+  /// The ruts of a vehicle that came through somewhere.
+  void roll() {
+    const Eigen::Vector2d by = way_[random_.index(way_.size())];
+    const TerrainEdge left = TerrainEdge::draw(TerrainEdgeKind::rut, {&by, 1}, 0,
+                                               random_.uniform(0, kTurn), settings_.size, random_);
+    edges_.push_back(left.beside(random_.uniform(-3, 3)));
+    edges_.push_back(edges_.back().beside(random_.uniform(1.2, 1.8)));
   }
 
   bool meets_another(const TerrainEdge& pit) const {

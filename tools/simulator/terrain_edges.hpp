@@ -19,6 +19,7 @@ enum class TerrainEdgeKind : std::uint8_t {
   bank,    ///< a slope of 20-35 degrees, 0.4-2.5 m down or up
   stairs,  ///< three steps or more, down or up
   ditch,   ///< through the whole terrain, 0.2-1 m deep
+  rut,     ///< of a wheel, 0.05-0.15 m deep
   furrow,  ///< a ploughed one beside others, 0.06-0.15 m deep
   pit      ///< closed, 5-15 m across, 0.4-2.5 m deep
 };
@@ -35,7 +36,7 @@ public:
   /// @param size of the terrain, metres
   static TerrainEdge draw(TerrainEdgeKind kind, std::span<const Eigen::Vector2d> way, double off,
                           double towards, double size, Random& random);
-  /// The furrow that runs `aside` metres beyond this one. @pre the kind is furrow
+  /// The furrow or rut that runs `aside` metres beyond this one.
   TerrainEdge beside(double aside) const;
 
   TerrainEdgeKind kind() const { return kind_; }

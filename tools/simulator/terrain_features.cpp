@@ -4,6 +4,7 @@
 #include "simulator/noise.hpp"
 #include "simulator/placement.hpp"
 #include "simulator/plants.hpp"
+#include "simulator/structures.hpp"
 #include "simulator/terrain.hpp"
 
 namespace scree {
@@ -171,6 +172,7 @@ void Terrain::paint(std::uint64_t seed) {
       const int feature = parts_[part_[index]].feature;
       const double base = feature == 0 ? soil : of_feature[static_cast<std::size_t>(feature)];
       const double value = base + 10 * patches(coordinate(column), coordinate(row));
+      if (feature != 0 && features_[static_cast<std::size_t>(feature) - 1].is_dark) continue;
       reflectivity_[index] = static_cast<std::uint8_t>(std::clamp(value, 1.0, 100.0));
     }
   }
@@ -179,6 +181,9 @@ void Terrain::paint(std::uint64_t seed) {
 void Terrain::put_up_things(std::uint64_t seed) {
   std::vector<Volume> volumes = grow_tufts(seed);
   FreeGround ground(*this);
+  for (TerrainThing& thing : draw_structures(*this, ground, seed)) {
+    put_up(std::move(thing), volumes);
+  }
   for (TerrainThing& thing : draw_plants(*this, ground, seed)) put_up(std::move(thing), volumes);
   for (Volume& tuft : grow_tall_grass(*this, ground, seed)) volumes.push_back(std::move(tuft));
   volumes_ = Volumes(std::move(volumes), settings_.size);

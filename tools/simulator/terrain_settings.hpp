@@ -16,7 +16,10 @@ inline constexpr ShapeWeights kRocksAndHoles = {1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1,
 struct EdgeCounts {
   int cliffs = 0, kerbs = 0, banks = 0, stairs = 0, ditches = 0, pits = 0;
   int ploughed = 0;  ///< fields of furrows
-  bool any() const { return cliffs + kerbs + banks + stairs + ditches + pits + ploughed > 0; }
+  int ruts = 0;      ///< pairs of them; they may cross the robot's way
+  bool any() const {
+    return cliffs + kerbs + banks + stairs + ditches + pits + ploughed + ruts > 0;
+  }
 };
 
 /// What grows on a terrain beside tufts of grass.
@@ -24,6 +27,16 @@ struct PlantCounts {
   double trees = 0, bushes = 0;  ///< a square metre
   int hedges = 0;
   double tall_grass = 0;  ///< share of the ground under it
+};
+
+/// What has been built on a terrain, and what lies about.
+struct StructureCounts {
+  int facades = 0, fences = 0, cars = 0, poles = 0, booms = 0, debris = 0;
+};
+
+/// What has been dug into a terrain: craters with a rim thrown up around them, still water.
+struct DiggingCounts {
+  int rimmed_craters = 0, ponds = 0;
 };
 
 /// How a terrain is drawn. Lengths in metres.
@@ -48,6 +61,8 @@ struct TerrainSettings {
   double boulder_cover = 0;  ///< share of the ground under boulders that touch and overlap
   EdgeCounts edges;
   PlantCounts plants;
+  StructureCounts structures;
+  DiggingCounts diggings;
   double placed_within = 18;  ///< features lie in the square from -this to this, or, where there is
                               ///< a corridor, this close to it
   double gap = 0.6;           ///< least distance of two features' rims

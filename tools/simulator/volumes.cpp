@@ -9,6 +9,8 @@ namespace scree {
 namespace {
 
 constexpr double kCell = 0.5;
+// Metres around each volume, so that a beam meets it that enters on a cell's very border or on top.
+constexpr double kMargin = 1e-6;
 
 struct Chord {
   double from, to;
@@ -145,8 +147,7 @@ Volumes::Volumes(std::vector<Volume> volumes, double size)
       lowest_(cells_ * cells_, std::numeric_limits<float>::max()),
       top_(std::numeric_limits<double>::lowest()) {
   const auto for_each_cell = [&](const Volume& volume, auto action) {
-    // A little more, so that a beam that enters it on a cell's very border meets it.
-    const Eigen::Vector3d reach = volume.reach().array() + 1e-6;
+    const Eigen::Vector3d reach = volume.reach().array() + kMargin;
     for (std::size_t row = cell_of(volume.center.y() - reach.y());
          row <= cell_of(volume.center.y() + reach.y()); ++row) {
       for (std::size_t column = cell_of(volume.center.x() - reach.x());
@@ -158,7 +159,7 @@ Volumes::Volumes(std::vector<Volume> volumes, double size)
   for (const Volume& volume : volumes_) {
     const double top = volume.center.z() + volume.reach().z();
     const double bottom = volume.center.z() - volume.reach().z();
-    top_ = std::max(top_, top);
+    top_ = std::max(top_, top + kMargin);
     for_each_cell(volume, [&](std::size_t cell) {
       ++first_[cell + 1];
       highest_[cell] = std::max(highest_[cell], static_cast<float>(top));
