@@ -160,6 +160,9 @@ Volumes::Volumes(std::vector<Volume> volumes, double size)
     const double top = volume.center.z() + volume.reach().z();
     const double bottom = volume.center.z() - volume.reach().z();
     top_ = std::max(top_, top + kMargin);
+    const double radius = volume.reach().head<2>().norm() + kMargin;
+    bounds_.push_back(
+        {volume.center.x(), volume.center.y(), radius * radius, bottom - kMargin, top + kMargin});
     for_each_cell(volume, [&](std::size_t cell) {
       ++first_[cell + 1];
       highest_[cell] = std::max(highest_[cell], static_cast<float>(top));
@@ -187,6 +190,7 @@ std::optional<VolumeHit> Volumes::cast(const Eigen::Vector3d& origin,
   if (volumes_.empty()) return std::nullopt;
   constexpr double kNudge = 1e-9;  // over the border into the next cell
   VolumeHit nearest{max_range, nullptr};
+  const double level = direction.head<2>().squaredNorm();
   double t = 0;
   if (direction.z() < 0) t = std::max((top_ - origin.z()) / direction.z(), 0.0);
   while (t < nearest.range) {
@@ -206,9 +210,15 @@ std::optional<VolumeHit> Volumes::cast(const Eigen::Vector3d& origin,
     leave = std::max(leave, t) + kNudge;
     const std::size_t cell = row * cells_ + column;
     const double end = origin.z() + leave * direction.z();
-    if (std::min(at.z(), end) < static_cast<double>(highest_[cell]) &&
-        std::max(at.z(), end) > static_cast<double>(lowest_[cell])) {
+    const double lower = std::min(at.z(), end);
+    const double upper = std::max(at.z(), end);
+    if (lower < static_cast<double>(highest_[cell]) && upper > static_cast<double>(lowest_[cell])) {
       for (std::uint32_t i = first_[cell]; i < first_[cell + 1]; ++i) {
+        const Bounds& bounds = bounds_[members_[i]];
+        if (lower >= bounds.top || upper <= bounds.bottom) continue;
+        const double aside =
+            (bounds.x - origin.x()) * direction.y() - (bounds.y - origin.y()) * direction.x();
+        if (aside * aside > bounds.squared_radius * level) continue;
         const Volume& volume = volumes_[members_[i]];
         const auto inside = chord(volume, origin, direction);
         // A volume in several cells counts in that where the beam enters it.

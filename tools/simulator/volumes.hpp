@@ -80,11 +80,16 @@ public:
 private:
   std::size_t cell_of(double coordinate) const;
 
+  /// An upright cylinder around a volume: most beams that come near it miss that one, too.
+  struct Bounds {
+    double x, y, squared_radius, bottom, top;
+  };
   double half_ = 0;
   std::size_t cells_ = 0;  // a side
   std::vector<Volume> volumes_;
   std::vector<std::uint32_t> first_,
       members_;                          // of each cell: members_[first_[cell]..first_[cell + 1]]
+  std::vector<Bounds> bounds_;           // of each volume
   std::vector<float> highest_, lowest_;  // of the volumes in each cell
   double top_ = 0;
 };
