@@ -4,10 +4,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "simulator/curves.hpp"
+
 namespace scree {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kStep = static_cast<double>(kTrackStepNs) * 1e-9;
 
 /// Height of the body's plane and its slopes forwards and to the left.

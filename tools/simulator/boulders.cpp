@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "simulator/curves.hpp"
+
 namespace scree {
 namespace {
-
-constexpr double kTurn = 2 * std::numbers::pi;
 
 double about(double mean, double deviation, double least, double most, Random& random) {
   return std::clamp(mean + deviation * random.normal(), least, most);
@@ -63,8 +63,7 @@ Footprint Boulder::footprint() const {
   Footprint corners;
   for (int i = 0; i < kCorners; ++i) {
     const double angle = kTurn * i / kCorners;
-    const Eigen::Vector2d own =
-        outline(angle) * half_.cwiseProduct(Eigen::Vector2d(std::cos(angle), std::sin(angle)));
+    const Eigen::Vector2d own = outline(angle) * half_.cwiseProduct(unit_vector(angle));
     corners.emplace_back(center_ + own.x() * axis_ +
                          own.y() * Eigen::Vector2d(-axis_.y(), axis_.x()));
   }

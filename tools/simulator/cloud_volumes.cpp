@@ -43,7 +43,7 @@ Eigen::Vector3d on_surface(const Volume& volume, Random& random) {
   double drawn = random.uniform(0, faces.sum());
   int axis = 0;
   while (axis < 2 && drawn >= faces[axis]) drawn -= faces[axis++];
-  Eigen::Vector3d at(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+  Eigen::Vector3d at{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
   at[axis] = random.chance(0.5) ? 1 : -1;
   return at;
 }

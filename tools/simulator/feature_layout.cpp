@@ -6,6 +6,8 @@
 #include <numeric>
 #include <span>
 
+#include "simulator/curves.hpp"
+
 namespace scree {
 namespace {
 
@@ -30,10 +32,6 @@ bool is_smooth(ShapeKind kind) {
 Footprint moved(Footprint footprint, const Eigen::Vector2d& by) {
   for (Eigen::Vector2d& corner : footprint) corner += by;
   return footprint;
-}
-
-Eigen::Vector2d unit(double angle) {
-  return {std::cos(angle), std::sin(angle)};
 }
 
 class Drawing {
@@ -108,7 +106,7 @@ private:
     return {{PlacedShape{Shape::draw(kind, random_)}}};
   }
 
-  Eigen::Vector2d direction() { return unit(random_.uniform(0, 2 * std::numbers::pi)); }
+  Eigen::Vector2d direction() { return unit_vector(random_.uniform(0, 2 * std::numbers::pi)); }
 
   Group side_by_side(const Shape& first, const Shape& second) {
     const double gap = random_.chance(0.4) ? random_.uniform(0.3, 0.33) : random_.uniform(0.3, 0.6);
@@ -160,7 +158,7 @@ private:
     const Eigen::Vector2d& by = settings_.corridor[random.index(settings_.corridor.size())];
     // Denser near the way, where a low sensor sees into holes.
     const double away = settings_.placed_within * std::pow(random.uniform(), 0.8);
-    center = by + away * unit(random.uniform(0, 2 * std::numbers::pi));
+    center = by + away * unit_vector(random.uniform(0, 2 * std::numbers::pi));
     return center.cwiseAbs().maxCoeff() < most;
   }
 

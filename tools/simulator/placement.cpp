@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "simulator/curves.hpp"
+
 namespace scree {
 
 FreeGround::FreeGround(const Terrain& terrain) : terrain_(terrain) {
@@ -56,7 +58,7 @@ Eigen::Vector2d FreeGround::near_way(double within, Random& random) const {
   }
   const Eigen::Vector2d& by = way[random.index(way.size())];
   const double angle = random.uniform(0, 2 * std::numbers::pi);
-  return by + random.uniform(0, within) * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+  return by + random.uniform(0, within) * unit_vector(angle);
 }
 
 double FreeGround::from_way(const Eigen::Vector2d& place) const {

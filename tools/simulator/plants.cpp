@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "scree/core/pose.hpp"
+#include "simulator/curves.hpp"
 #include "simulator/noise.hpp"
 
 namespace scree {
@@ -12,14 +13,9 @@ namespace {
 
 enum PlantStream : std::uint64_t { kTrees = 800, kBushes, kHedges, kTallGrass };
 
-constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kLeastBush = 0.5;      // metres: lower ones are not asked for
 constexpr double kThinnestBush = 0.45;  // share of the light that passes: nor are thinner ones
 constexpr double kClearance = 1.5;      // metres: what hangs higher is not in the way
-
-Eigen::Vector2d unit(double angle) {
-  return {std::cos(angle), std::sin(angle)};
-}
 
 /// So that this share of the light passes a path of this length.
 double density_for(double light, double path) {
@@ -30,7 +26,7 @@ void add_circle(std::vector<Eigen::Vector2d>& points, const Eigen::Vector2d& cen
                 double radius) {
   constexpr int kCorners = 16;
   for (int i = 0; i < kCorners; ++i) {
-    points.emplace_back(center + radius * unit(kTurn * i / kCorners));
+    points.emplace_back(center + radius * unit_vector(kTurn * i / kCorners));
   }
 }
 
@@ -72,6 +68,11 @@ private:
     lobe.part = 1;
     return lobe;
   }
+  /// Anywhere around, this far.
+  Eigen::Vector2d aside(double least, double most) {
+    const double away = random_.uniform(least, most);
+    return away * unit_vector(random_.uniform(0, kTurn));
+  }
   void add_trunk(TerrainThing& tree, const Eigen::Vector3d& foot, double radius, double height);
   void add_crown(TerrainThing& tree, const Eigen::Vector3d& foot, double from, double to);
   void add_cone(TerrainThing& tree, const Eigen::Vector3d& foot, double from, double to);
@@ -96,7 +97,7 @@ void Planting::add_trunk(TerrainThing& tree, const Eigen::Vector3d& foot, double
                          double height) {
   constexpr double kRoots = 0.2;
   constexpr double kMostLean = 0.08;  // metres a metre
-  const Eigen::Vector2d lean = random_.uniform(0, kMostLean) * unit(random_.uniform(0, kTurn));
+  const Eigen::Vector2d lean = aside(0, kMostLean);
   Volume trunk = Volume::rod(foot - Eigen::Vector3d(0, 0, kRoots),
                              foot + height * Eigen::Vector3d(lean.x(), lean.y(), 1), radius);
   trunk.part = 1;
@@ -113,10 +114,8 @@ void Planting::add_crown(TerrainThing& tree, const Eigen::Vector3d& foot, double
     const double half_height = std::min(radius * random_.uniform(0.5, 0.9), (to - from) / 2);
     const double up =
         random_.uniform(from + half_height, std::max(to - half_height, from + half_height));
-    const Eigen::Vector2d aside =
-        spread * random_.uniform(0, 0.7) * unit(random_.uniform(0, kTurn));
-    tree.volumes.push_back(leaves(foot + Eigen::Vector3d(aside.x(), aside.y(), up), radius,
-                                  half_height,
+    const Eigen::Vector2d off = spread * aside(0, 0.7);
+    tree.volumes.push_back(leaves(foot + Eigen::Vector3d(off.x(), off.y(), up), radius, half_height,
                                   density_for(random_.uniform(0.25, 0.75), 2 * radius)));
   }
 }
@@ -144,11 +143,9 @@ TerrainThing Planting::tree(const Eigen::Vector2d& at) {
   const int stems = random_.chance(0.12) ? 2 + static_cast<int>(random_.index(2)) : 1;
   std::vector<Eigen::Vector2d> outline;
   for (int i = 0; i < stems; ++i) {
-    const Eigen::Vector2d aside =
-        stems > 1 ? Eigen::Vector2d(random_.uniform(0.1, 0.4) * unit(random_.uniform(0, kTurn)))
-                  : Eigen::Vector2d(0, 0);
-    add_trunk(tree, on_ground(at + aside), thickness, 0.75 * height);
-    add_circle(outline, at + aside, std::max(thickness, 0.1));
+    const Eigen::Vector2d off = stems > 1 ? aside(0.1, 0.4) : Eigen::Vector2d(0, 0);
+    add_trunk(tree, on_ground(at + off), thickness, 0.75 * height);
+    add_circle(outline, at + off, std::max(thickness, 0.1));
   }
   const Eigen::Vector3d foot = on_ground(at);
   is_conifer ? add_cone(tree, foot, crown, height) : add_crown(tree, foot, crown, height);
@@ -173,18 +170,17 @@ TerrainThing Planting::bush(const Eigen::Vector2d& at) {
   std::vector<Eigen::Vector2d> outline;
   for (int i = 0; i < lobes; ++i) {
     const double wide = radius * random_.uniform(0.45, 0.75);
-    const Eigen::Vector2d aside =
-        i == 0 ? Eigen::Vector2d(0, 0)
-               : Eigen::Vector2d((radius - wide) * unit(random_.uniform(0, kTurn)));
+    const Eigen::Vector2d off =
+        i == 0 ? Eigen::Vector2d(0, 0) : aside(radius - wide, radius - wide);
     const double tall = i == 0 ? height : height * random_.uniform(0.5, 0.95);
     // The leaves begin at the ground or a little above it.
     const double bottom = random_.uniform(-0.3, 0.2) * tall;
-    Eigen::Vector3d center = on_ground(at + aside);
+    Eigen::Vector3d center = on_ground(at + off);
     center.z() += (bottom + tall) / 2;
     // Two lobes overlap in the middle.
     bush.volumes.push_back(
         leaves(center, wide, (tall - bottom) / 2, density_for(light, 2.5 * radius)));
-    add_circle(outline, at + aside, wide);
+    add_circle(outline, at + off, wide);
   }
   bush.feature.footprint = hull(std::move(outline));
   bush.feature.is_small = height < kLeastBush || light >= kThinnestBush;
@@ -201,13 +197,13 @@ TerrainThing Planting::hedge(const Eigen::Vector2d& at) {
   const bool is_trimmed = random_.chance(0.4);
   const double bend = random_.uniform(-0.02, 0.02);
   const double yaw = ground_.way_beside(at, random_) + random_.uniform(-0.3, 0.3);
-  const Eigen::Vector2d along = unit(yaw);
+  const Eigen::Vector2d along = unit_vector(yaw);
   const Eigen::Vector2d across(-along.y(), along.x());
-  constexpr double kStep = 0.5;
-  const auto steps = static_cast<int>(length / kStep);
+  constexpr double kPiece = 0.5;
+  const auto steps = static_cast<int>(length / kPiece);
   Footprint other_side;
   for (int i = 0; i <= steps; ++i) {
-    const double u = kStep * i - length / 2;
+    const double u = kPiece * i - length / 2;
     const Eigen::Vector2d middle = at + u * along + bend * u * u * across;
     if (i % 2 == 0) hedge.places.push_back(middle);
     const auto part = static_cast<std::uint16_t>(hedge.places.size());
@@ -215,10 +211,10 @@ TerrainThing Planting::hedge(const Eigen::Vector2d& at) {
     const double wide = is_trimmed ? width : width * random_.uniform(0.7, 1);
     Volume piece = leaves(on_ground(middle), wide / 2, tall, density_for(light, width));
     if (is_trimmed) {
-      piece = Volume::block(on_ground(middle), {kStep / 2, wide / 2, tall}, yaw);
+      piece = Volume::block(on_ground(middle), {kPiece / 2, wide / 2, tall}, yaw);
       piece.density = density_for(light, width);
     } else {
-      piece.half.x() = piece.half.y() = std::max(wide / 2, 0.6 * kStep);
+      piece.half.x() = piece.half.y() = std::max(wide / 2, 0.6 * kPiece);
     }
     piece.part = part;
     piece.darkest = 20;

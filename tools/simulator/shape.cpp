@@ -5,14 +5,10 @@
 #include <numbers>
 
 #include "scree/core/pose.hpp"
+#include "simulator/curves.hpp"
 
 namespace scree {
 namespace {
-
-double smooth_step(double from, double to, double x) {
-  const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
-  return t * t * (3 - 2 * t);
-}
 
 double bell(double radius) {
   const double c = std::cos(std::min(radius, 1.0) * std::numbers::pi / 2);

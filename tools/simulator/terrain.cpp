@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "scree/core/pose.hpp"
+#include "simulator/curves.hpp"
 #include "simulator/noise.hpp"
 
 namespace scree {
@@ -13,11 +14,6 @@ namespace {
 
 // Each part of a terrain draws from a stream of its own, so that changing one leaves the others.
 constexpr std::uint64_t kGround = 1, kRoughness = 100, kUnevenness = 400, kTufts = 500;
-
-double smooth(double t) {
-  const double x = std::clamp(t, 0.0, 1.0);
-  return x * x * (3 - 2 * x);
-}
 
 /// The slope that 99.5 % of the raster stays under, over 0.1 m.
 double steep_slope(const std::vector<float>& height, std::size_t vertices, double cell) {
@@ -85,8 +81,8 @@ void Terrain::roll_ground(std::uint64_t seed) {
       for (std::size_t column = 0; column < vertices_; ++column) {
         const double away = std::hypot(coordinate(column), coordinate(row));
         float& height = height_[row * vertices_ + column];
-        height =
-            (height - middle) * static_cast<float>(smooth((away - settings_.level_radius) / 6));
+        height = (height - middle) *
+                 static_cast<float>(smooth_step(0, 1, (away - settings_.level_radius) / 6));
       }
     }
   }

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "simulator/curves.hpp"
 #include "simulator/placement.hpp"
 #include "simulator/terrain.hpp"
 
@@ -9,13 +10,6 @@ namespace scree {
 namespace {
 
 enum DiggingStream : std::uint64_t { kCraters = 1100, kPonds };
-
-constexpr double kTurn = 2 * std::numbers::pi;
-
-double smooth(double t) {
-  const double x = std::clamp(t, 0.0, 1.0);
-  return x * x * (3 - 2 * x);
-}
 
 /// A place's distance from the middle of an uneven circle, 1 on it.
 struct Ring {
@@ -38,8 +32,7 @@ struct Ring {
     Footprint corners;
     for (int i = 0; i < kCorners; ++i) {
       const double angle = kTurn * i / kCorners;
-      corners.emplace_back(center +
-                           grown * at(angle) * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
+      corners.emplace_back(center + grown * at(angle) * unit_vector(angle));
     }
     return corners;
   }
@@ -68,7 +61,7 @@ void Terrain::dig(std::uint64_t seed) {
       const double depth = std::max(0.2, ring.radius * craters.uniform(0.3, 0.7));
       const double rim = craters.uniform(0.1, 0.4);
       const auto profile = [&](double r) {
-        if (r >= 1) return rim * (1 - smooth((r - 1) / (wide - 1)));
+        if (r >= 1) return rim * (1 - smooth_step(0, 1, (r - 1) / (wide - 1)));
         return -depth + (depth + rim) * r * r;
       };
       TerrainFeature& crater =
@@ -118,7 +111,7 @@ void Terrain::fill_pond(const Eigen::Vector2d& center, Footprint footprint, doub
   }
   level -= 0.05;
   const auto drop = [&](const Eigen::Vector2d& at) {
-    const double share = 1 - smooth((radius_at(at) - 1) / (kBank - 1));
+    const double share = 1 - smooth_step(0, 1, (radius_at(at) - 1) / (kBank - 1));
     return share * (level - height(at.x(), at.y()));
   };
   TerrainFeature& pond = reshape(center, std::move(footprint), reach, drop);

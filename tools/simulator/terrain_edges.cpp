@@ -7,20 +7,14 @@
 #include <numbers>
 
 #include "scree/core/pose.hpp"
+#include "simulator/curves.hpp"
 
 namespace scree {
 namespace {
 
-constexpr std::uint64_t kEdges = 700;
-constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kApart = 0.5;            // of the line's points, metres
 constexpr double kLeastHeight = 0.15;     // metres: lower steps are neither asked for nor wrong
 constexpr double kSteepestGround = 30.0;  // degrees
-
-double smooth_step(double from, double to, double x) {
-  const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
-  return t * t * (3 - 2 * t);
-}
 
 Eigen::Vector2d normal_of(const Eigen::Vector2d& axis) {
   return {-axis.y(), axis.x()};
@@ -122,7 +116,8 @@ void TerrainEdge::draw_line(std::span<const Eigen::Vector2d> way, double off, do
   }
   if (random.chance(0.3) && may_bend && kind_ != TerrainEdgeKind::furrow &&
       kind_ != TerrainEdgeKind::rut) {
-    corner_ = std::copysign(std::tan(radians(random.uniform(15, 45))), random.uniform(-1, 1));
+    const double turn = std::tan(radians(random.uniform(15, 45)));
+    corner_ = random.chance(0.5) ? turn : -turn;
   }
   // So wide that the strip beside it does not cross itself.
   corner_radius_ = width_ + random.uniform(0.2, 0.6);
@@ -149,8 +144,7 @@ void TerrainEdge::draw_ring(std::span<const Eigen::Vector2d> way, double off, do
   for (int i = 0; i < kTries; ++i) {
     const double angle = random.uniform(0, kTurn);
     const Eigen::Vector2d& by = way[random.index(way.size())];
-    center_ =
-        by + away * random.uniform(1, 1.2) * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+    center_ = by + away * random.uniform(1, 1.2) * unit_vector(angle);
     const bool is_free = std::ranges::all_of(
         way, [&](const Eigen::Vector2d& point) { return (point - center_).norm() >= away; });
     if (is_free && center_.cwiseAbs().maxCoeff() + away < size / 2) return;
@@ -217,8 +211,7 @@ void TerrainEdge::trace(std::span<const Eigen::Vector2d> way, double size) {
     const auto points = static_cast<std::size_t>(std::ceil(kTurn * radius_ / kApart));
     for (std::size_t i = 0; i < points; ++i) {
       const double angle = kTurn * static_cast<double>(i) / static_cast<double>(points);
-      line_.emplace_back(center_ +
-                         ring_radius(angle) * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
+      line_.emplace_back(center_ + ring_radius(angle) * unit_vector(angle));
     }
     return;
   }
@@ -259,108 +252,6 @@ bool TerrainEdge::is_ground() const {
 
 bool TerrainEdge::is_minor() const {
   return kind_ == TerrainEdgeKind::bank || std::abs(height_) < kLeastHeight;
-}
-
-namespace {
-
-/// Where a robot passes that stands at the origin.
-std::vector<Eigen::Vector2d> around_origin(double radius) {
-  std::vector<Eigen::Vector2d> points;
-  constexpr int kPoints = 16;
-  for (int i = 0; i < kPoints; ++i) {
-    const double angle = kTurn * i / kPoints;
-    points.emplace_back(radius * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
-  }
-  return points;
-}
-
-class EdgeDrawing {
-public:
-  EdgeDrawing(const TerrainSettings& settings, std::uint64_t seed)
-      : settings_(settings), random_(seed, kEdges), way_(settings.corridor) {
-    if (way_.empty()) {
-      way_ = around_origin(std::max(settings.clear_radius, 0.2 * settings.placed_within));
-    }
-    const Eigen::Vector2d driven = way_.back() - way_.front();
-    // Every other time the robot ends its way before the edge.
-    towards_ = settings.corridor.empty() || random_.chance(0.4)
-                   ? random_.uniform(0, kTurn)
-                   : std::atan2(driven.y(), driven.x()) + random_.uniform(-0.5, 0.5);
-  }
-
-  std::vector<TerrainEdge> draw() && {
-    const EdgeCounts& edges = settings_.edges;
-    add(TerrainEdgeKind::cliff, edges.cliffs);
-    add(TerrainEdgeKind::kerb, edges.kerbs);
-    add(TerrainEdgeKind::stairs, edges.stairs);
-    add(TerrainEdgeKind::ditch, edges.ditches);
-    add(TerrainEdgeKind::bank, edges.banks);
-    for (int i = 0; i < edges.ploughed; ++i) plough();
-    for (int i = 0; i < edges.ruts; ++i) roll();
-    add(TerrainEdgeKind::pit, edges.pits);
-    return std::move(edges_);
-  }
-
-private:
-  /// A distance that an edge keeps from the robot's way.
-  double off() {
-    if (settings_.corridor.empty()) return random_.uniform(0.3, 0.4 * settings_.placed_within);
-    return settings_.corridor_half_width + random_.uniform(0.2, 1.2);
-  }
-
-  TerrainEdge next(TerrainEdgeKind kind) {
-    TerrainEdge edge = TerrainEdge::draw(kind, way_, off(), towards_, settings_.size, random_);
-    if (kind != TerrainEdgeKind::pit) towards_ += std::numbers::pi + random_.uniform(-0.4, 0.4);
-    return edge;
-  }
-
-  void add(TerrainEdgeKind kind, int count) {
-    for (int i = 0; i < count; ++i) {
-      TerrainEdge edge = next(kind);
-      if (edge.line().size() < 4 || (kind == TerrainEdgeKind::pit && meets_another(edge))) continue;
-      edges_.push_back(std::move(edge));
-    }
-  }
-
-  void plough() {
-    const TerrainEdge first = next(TerrainEdgeKind::furrow);
-    const double apart = first.width() + random_.uniform(0.1, 0.3);
-    const int count = 3 + static_cast<int>(random_.index(10));
-    for (int i = 0; i < count; ++i) edges_.push_back(first.beside(i * apart));
-  }
-
-  /// The ruts of a vehicle that came through somewhere.
-  void roll() {
-    const Eigen::Vector2d by = way_[random_.index(way_.size())];
-    const TerrainEdge left = TerrainEdge::draw(TerrainEdgeKind::rut, {&by, 1}, 0,
-                                               random_.uniform(0, kTurn), settings_.size, random_);
-    edges_.push_back(left.beside(random_.uniform(-3, 3)));
-    edges_.push_back(edges_.back().beside(random_.uniform(1.2, 1.8)));
-  }
-
-  bool meets_another(const TerrainEdge& pit) const {
-    constexpr double kPitsApart = 1;
-    return std::ranges::any_of(edges_, [&](const TerrainEdge& other) {
-      return std::ranges::any_of(pit.line(), [&](const Eigen::Vector2d& point) {
-        const double beyond = other.beyond(point);
-        return beyond > -kPitsApart &&
-               (other.kind() == TerrainEdgeKind::pit || beyond < other.width() + kPitsApart);
-      });
-    });
-  }
-
-  const TerrainSettings& settings_;
-  Random random_;
-  std::vector<Eigen::Vector2d> way_;
-  double towards_ = 0;
-  std::vector<TerrainEdge> edges_;
-};
-
-}  // namespace
-
-std::vector<TerrainEdge> draw_edges(const TerrainSettings& settings, std::uint64_t seed) {
-  if (!settings.edges.any()) return {};
-  return EdgeDrawing(settings, seed).draw();
 }
 
 }  // namespace scree

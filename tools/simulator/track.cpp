@@ -6,12 +6,12 @@
 #include <numbers>
 
 #include "scree/core/random.hpp"
+#include "simulator/curves.hpp"
 
 namespace scree {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
-constexpr double kStep = static_cast<double>(kTrackStepNs) * 1e-9;
+constexpr double kTrackStep = static_cast<double>(kTrackStepNs) * 1e-9;
 
 /// With no jerk at its ends.
 double smoother(double t) {
@@ -86,7 +86,7 @@ std::vector<TrackPoint> draw_track(const TrackSettings& settings, std::uint64_t 
   const SpeedProfile speed_at(settings, random, backing);
   const Waves bends(random, 4, 16);
   const double sharpest = random.uniform(0.1, 0.4);
-  const auto points = static_cast<std::size_t>(std::ceil(settings.seconds / kStep)) + 1;
+  const auto points = static_cast<std::size_t>(std::ceil(settings.seconds / kTrackStep)) + 1;
   std::vector<TrackPoint> track(points);
   track[0].yaw = random.uniform(-std::numbers::pi, std::numbers::pi);
   track[0].position = {random.uniform(-3, 3), random.uniform(-3, 3)};
@@ -94,7 +94,7 @@ std::vector<TrackPoint> draw_track(const TrackSettings& settings, std::uint64_t 
   double curvature = sharpest * bends(0);
   for (std::size_t i = 0; i + 1 < points; ++i) {
     TrackPoint& here = track[i];
-    here.speed = speed_at(static_cast<double>(i) * kStep);
+    here.speed = speed_at(static_cast<double>(i) * kTrackStep);
     double wanted = sharpest * bends(driven);
     if (here.position.norm() > kArena) {
       const double home = std::atan2(-here.position.y(), -here.position.x());
@@ -102,15 +102,15 @@ std::vector<TrackPoint> draw_track(const TrackSettings& settings, std::uint64_t 
       if (std::cos(home - here.yaw) < 0) wanted = std::copysign(0.4, std::sin(home - here.yaw));
     }
     const double most = kMostTurning / std::max(std::abs(here.speed), 0.3);
-    curvature += (std::clamp(wanted, -most, most) - curvature) * kStep / 0.5;
-    const double moved = here.speed * kStep;
+    curvature += (std::clamp(wanted, -most, most) - curvature) * kTrackStep / 0.5;
+    const double moved = here.speed * kTrackStep;
     driven += moved;
     track[i + 1].yaw = here.yaw + moved * curvature;
     const double heading = here.yaw + moved * curvature / 2;
     track[i + 1].position =
         here.position + moved * Eigen::Vector2d(std::cos(heading), std::sin(heading));
   }
-  track.back().speed = speed_at(static_cast<double>(points - 1) * kStep);
+  track.back().speed = speed_at(static_cast<double>(points - 1) * kTrackStep);
   return track;
 }
 
