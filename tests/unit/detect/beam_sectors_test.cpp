@@ -9,7 +9,7 @@
 namespace scree {
 namespace {
 
-const Eigen::Vector3f kSensor(0, 0, 1);
+const Eigen::Vector3f kAboveRings(0, 0, 1);
 
 /// Rings of level ground, and points behind the one at 4 m.
 struct Rings {
@@ -33,7 +33,7 @@ struct Rings {
   }
   Evidence evidence() const {
     BeamSectors sectors(20'000);
-    sectors.build(cloud, kSensor);
+    sectors.build(cloud, kAboveRings);
     return sectors.of(members, cloud, 0);
   }
 };
@@ -60,7 +60,7 @@ TEST(BeamSectors, AboveTheSensorThereIsNone) {
   Rings rings({3, 4, 7});
   rings.add(5, 2);
   BeamSectors sectors(20'000);
-  sectors.build(rings.cloud, kSensor);
+  sectors.build(rings.cloud, kAboveRings);
   EXPECT_EQ(sectors.of(rings.members, rings.cloud, 2.5F), Evidence::none);
 }
 

@@ -6,8 +6,20 @@
 #include <random>
 
 #include "scree/core/point_cloud.hpp"
+#include "scree/detect/ground_surface.hpp"
 
 namespace scree::test {
+
+/// Of the shipped profile for clouds.
+inline constexpr GroundSurfaceSettings kGroundSettings{.cell_size = 0.08F,
+                                                       .cell_points = 2.15F,
+                                                       .max_slope = 0.34F,
+                                                       .tolerance = 0.1F,
+                                                       .trend_reach = 0};
+
+inline bool in_square(float x, float y, float half_width) {
+  return std::abs(x) < half_width && std::abs(y) < half_width;
+}
 
 /// Where clouds() puts its bump and its bowl, and how wide they are.
 inline constexpr float kBumpX = 2, kBowlX = -2, kRoundRadius = 0.6F, kRoundHeight = 0.4F;

@@ -7,23 +7,20 @@
 #include <random>
 #include <vector>
 
+#include "detect/clouds.hpp"
+
 namespace scree {
 namespace {
 
-constexpr std::size_t kPoints = 60'000, kCells = 1 << 16;
-constexpr GroundSurfaceSettings kSettings{.cell_size = 0.08F,
-                                          .cell_points = 2.15F,
-                                          .max_slope = 0.34F,
-                                          .tolerance = 0.1F,
-                                          .trend_reach = 0};
+constexpr std::size_t kEdgePoints = 60'000, kEdgeCells = 1 << 16;
 
 /// 12 x 10 m of this shape, seen evenly, NaN: nothing is seen; with noise of 5 mm.
-PointCloud seen(const std::function<float(float, float)>& height) {
+PointCloud shaped(const std::function<float(float, float)>& height) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> along(-8, 4), across(-5, 5);
   std::normal_distribution<float> noise(0, 0.005F);
-  PointCloud cloud(kPoints + 2);
-  for (std::size_t i = 0; i < kPoints; ++i) {
+  PointCloud cloud(kEdgePoints + 2);
+  for (std::size_t i = 0; i < kEdgePoints; ++i) {
     const float x = along(random), y = across(random), z = height(x, y);
     if (!std::isnan(z)) cloud.push_back(x, y, z + noise(random), 0);
   }
@@ -33,7 +30,7 @@ PointCloud seen(const std::function<float(float, float)>& height) {
 class GroundEdgesTest : public testing::Test {
 protected:
   std::span<const GroundEdge> edges_of(PointView cloud, std::span<const PassingBeam> lost = {}) {
-    surface_.build(cloud, kSettings);
+    surface_.build(cloud, test::kGroundSettings);
     const Eigen::Vector3f sensor(-6, 0, 1);
     SeenCloud with_beams{.points = cloud};
     if (!lost.empty()) {
@@ -45,14 +42,14 @@ protected:
     return edges_.all();
   }
 
-  GroundSurface surface_{kPoints + 2, kCells};
-  HoleEvidence evidence_{kCells};
-  GroundEdges edges_{kCells};
+  GroundSurface surface_{kEdgePoints + 2, kEdgeCells};
+  HoleEvidence evidence_{kEdgeCells};
+  GroundEdges edges_{kEdgeCells};
 };
 
 TEST_F(GroundEdgesTest, AStepDownIsOneEdgeBeyondTheGround) {
   for (const float step : {-0.2F, -0.5F, -1.5F}) {
-    const auto edges = edges_of(seen([&](float x, float) { return x < 2 ? 0.0F : step; }));
+    const auto edges = edges_of(shaped([&](float x, float) { return x < 2 ? 0.0F : step; }));
     ASSERT_EQ(edges.size(), 1U) << step;
     EXPECT_NEAR(edges[0].step, step, 0.05) << step;
     EXPECT_NEAR(edges[0].ground, 0, 0.02) << step;
@@ -65,18 +62,18 @@ TEST_F(GroundEdgesTest, AStepDownIsOneEdgeBeyondTheGround) {
 
 TEST_F(GroundEdgesTest, AStepUpToLevelGroundIsOneEdge) {
   // The lower ground is the larger one.
-  const auto edges = edges_of(seen([](float x, float) { return x < 2 ? 0.0F : 0.3F; }));
+  const auto edges = edges_of(shaped([](float x, float) { return x < 2 ? 0.0F : 0.3F; }));
   ASSERT_EQ(edges.size(), 1U);
   EXPECT_NEAR(edges[0].step, 0.3, 0.05);
   EXPECT_GT(edges[0].box.length, 9);
 }
 
 TEST_F(GroundEdgesTest, LowStepsSlopesAndHollowsAreNone) {
-  EXPECT_TRUE(edges_of(seen([](float x, float) { return x < 2 ? 0.0F : -0.1F; })).empty());
-  EXPECT_TRUE(edges_of(seen([](float x, float) { return 0.33F * x; })).empty());
-  EXPECT_TRUE(edges_of(seen([](float x, float) { return -0.33F * std::max(x, 0.0F); })).empty());
+  EXPECT_TRUE(edges_of(shaped([](float x, float) { return x < 2 ? 0.0F : -0.1F; })).empty());
+  EXPECT_TRUE(edges_of(shaped([](float x, float) { return 0.33F * x; })).empty());
+  EXPECT_TRUE(edges_of(shaped([](float x, float) { return -0.33F * std::max(x, 0.0F); })).empty());
   for (const float sign : {-1.0F, 1.0F}) {
-    EXPECT_TRUE(edges_of(seen([&](float x, float y) {
+    EXPECT_TRUE(edges_of(shaped([&](float x, float y) {
                   const float share = std::min(std::hypot(x, y) / 2.5F, 1.0F);
                   return sign * 0.2F * (1 + std::cos(3.14159F * share));
                 })).empty())
@@ -85,13 +82,13 @@ TEST_F(GroundEdgesTest, LowStepsSlopesAndHollowsAreNone) {
 }
 
 TEST_F(GroundEdgesTest, ARockOnLevelGroundIsNone) {
-  EXPECT_TRUE(edges_of(seen([](float x, float y) {
+  EXPECT_TRUE(edges_of(shaped([](float x, float y) {
                 return std::abs(x) < 0.5F && std::abs(y) < 0.4F ? 0.6F : 0.0F;
               })).empty());
 }
 
 TEST_F(GroundEdgesTest, ReflectionsBelowSeenGroundAreNone) {
-  PointCloud cloud = seen([](float, float) { return 0.0F; });
+  PointCloud cloud = shaped([](float, float) { return 0.0F; });
   std::mt19937 random(7);
   std::uniform_real_distribution<float> place(0, 1), depth(-1.6F, -0.35F);
   for (int i = 0; i < 100; ++i) cloud.y[static_cast<std::size_t>(i)] = place(random);
@@ -104,7 +101,8 @@ TEST_F(GroundEdgesTest, ReflectionsBelowSeenGroundAreNone) {
 
 TEST_F(GroundEdgesTest, ACornerIsPartedSoThatItsBoxesHoldLittleGround) {
   // The ground ends at a corner at (2, 3).
-  const auto edges = edges_of(seen([](float x, float y) { return x < 2 && y < 3 ? 0.0F : -0.6F; }));
+  const auto edges =
+      edges_of(shaped([](float x, float y) { return x < 2 && y < 3 ? 0.0F : -0.6F; }));
   ASSERT_GE(edges.size(), 2U);
   for (const GroundEdge& edge : edges) {
     EXPECT_LT(edge.step, -0.5);
@@ -114,7 +112,7 @@ TEST_F(GroundEdgesTest, ACornerIsPartedSoThatItsBoxesHoldLittleGround) {
 
 TEST_F(GroundEdgesTest, WhereNothingIsSeenLostBeamsTellOfAShadow) {
   const auto ground = [](float x, float) { return x < 2 ? 0.0F : std::nanf(""); };
-  PointCloud cloud = seen(ground);
+  PointCloud cloud = shaped(ground);
   EXPECT_TRUE(edges_of(cloud).empty()) << "beams that are not known say nothing";
   std::vector<PassingBeam> lost;
   const Eigen::Vector3f sensor(-6, 0, 1);

@@ -6,15 +6,12 @@
 #include <functional>
 #include <random>
 
+#include "detect/clouds.hpp"
+
 namespace scree {
 namespace {
 
 constexpr std::size_t kMaxPoints = 60'000, kMaxCells = 1 << 15;
-constexpr GroundSurfaceSettings kSettings{.cell_size = 0.08F,
-                                          .cell_points = 2.15F,
-                                          .max_slope = 0.34F,
-                                          .tolerance = 0.1F,
-                                          .trend_reach = 0};
 
 /// 8 x 8 m of this shape, seen evenly, with noise of 5 mm.
 PointCloud seen(const std::function<float(float, float)>& height, std::size_t points = 30'000) {
@@ -37,7 +34,7 @@ bool is_ground(const GroundSurface& surface, float x, float y) {
 class GroundSurfaceTest : public testing::TestWithParam<float> {
 protected:
   static GroundSurfaceSettings settings_for_test() {
-    GroundSurfaceSettings settings = kSettings;
+    GroundSurfaceSettings settings = test::kGroundSettings;
     settings.trend_reach = GetParam();
     return settings;
   }
@@ -48,10 +45,6 @@ protected:
   }
 };
 INSTANTIATE_TEST_SUITE_P(Trend, GroundSurfaceTest, testing::Values(0.0F, 2.0F));
-
-bool in_square(float x, float y, float half_width) {
-  return std::abs(x) < half_width && std::abs(y) < half_width;
-}
 
 float slope(float x) {
   return 0.25F * x;
@@ -69,7 +62,7 @@ TEST_P(GroundSurfaceTest, SpansRocksAndHolesWithTheSlopeAroundThem) {
   for (const float height : {0.2F, 1.2F, -0.2F, -1.0F}) {
     for (const float half_width : {0.15F, 0.5F, 1.0F}) {
       const GroundSurface surface = surface_of(seen([&](float x, float y) {
-        return slope(x) + (in_square(x, y, half_width) ? height : 0.0F);
+        return slope(x) + (test::in_square(x, y, half_width) ? height : 0.0F);
       }));
       EXPECT_NEAR(surface.height(0, 0), 0, 0.04) << height << ' ' << half_width;
       EXPECT_FALSE(is_ground(surface, 0, 0)) << height << ' ' << half_width;
@@ -79,8 +72,9 @@ TEST_P(GroundSurfaceTest, SpansRocksAndHolesWithTheSlopeAroundThem) {
 }
 
 TEST_P(GroundSurfaceTest, IsNotRaisedBetweenTwoTallRocks) {
-  const GroundSurface surface = surface_of(
-      seen([](float x, float y) { return in_square(std::abs(x) - 0.65F, y, 0.5F) ? 1.0F : 0.0F; }));
+  const GroundSurface surface = surface_of(seen([](float x, float y) {
+    return test::in_square(std::abs(x) - 0.65F, y, 0.5F) ? 1.0F : 0.0F;
+  }));
   EXPECT_NEAR(surface.height(0, 0), 0, 0.03);
   EXPECT_TRUE(is_ground(surface, 0, 0));
 }
@@ -89,7 +83,7 @@ TEST_P(GroundSurfaceTest, FollowsASmoothHollowDownToThePotholeInIt) {
   const GroundSurface surface = surface_of(seen([](float x, float y) {
     const float share = std::min(std::hypot(x, y) / 2.5F, 1.0F);
     const float hollow = -0.2F * (1 + std::cos(3.14159F * share));
-    return hollow - (in_square(x, y, 0.2F) ? 0.3F : 0.0F);
+    return hollow - (test::in_square(x, y, 0.2F) ? 0.3F : 0.0F);
   }));
   EXPECT_NEAR(surface.height(0, 0), -0.4, 0.03);
   EXPECT_NEAR(surface.height(1.25F, 0), -0.2, 0.02);
@@ -134,9 +128,9 @@ TEST_P(GroundSurfaceTest, IsNotMovedBySinglePointsThatBelongToNothing) {
 
 TEST_P(GroundSurfaceTest, TakesLargerCellsWhereTheCloudIsSparseOrWide) {
   const auto flat = [](float, float) { return 0.0F; };
-  EXPECT_EQ(surface_of(seen(flat, 60'000)).cell_size(), kSettings.cell_size);
+  EXPECT_EQ(surface_of(seen(flat, 60'000)).cell_size(), test::kGroundSettings.cell_size);
   const GroundSurface sparse = surface_of(seen(flat, 3'000));
-  EXPECT_GT(sparse.cell_size(), 1.5F * kSettings.cell_size);
+  EXPECT_GT(sparse.cell_size(), 1.5F * test::kGroundSettings.cell_size);
   EXPECT_TRUE(is_ground(sparse, 1, 1));
 
   PointCloud wide = seen(flat);
@@ -173,7 +167,7 @@ TEST(GroundSurface, TheTrendGoesOnWithASlopeFromRingToRing) {
     }
   }
   GroundSurface surface(kMaxPoints, kMaxCells);
-  GroundSurfaceSettings settings = kSettings;
+  GroundSurfaceSettings settings = test::kGroundSettings;
   settings.trend_reach = 2;
   surface.build(cloud, settings);
   EXPECT_NEAR(surface.height(4.5F, 0), slope(4.5F), 0.06);

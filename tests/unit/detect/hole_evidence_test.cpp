@@ -8,26 +8,23 @@
 #include <random>
 #include <vector>
 
+#include "detect/clouds.hpp"
+
 namespace scree {
 namespace {
 
-constexpr std::size_t kPoints = 60'000, kCells = 1 << 15;
-constexpr GroundSurfaceSettings kSettings{.cell_size = 0.08F,
-                                          .cell_points = 2.15F,
-                                          .max_slope = 0.34F,
-                                          .tolerance = 0.1F,
-                                          .trend_reach = 0};
-const Eigen::Vector3f kSensor(-3, 0, 1);
+constexpr std::size_t kHolePoints = 60'000, kHoleCells = 1 << 15;
+const Eigen::Vector3f kBesideThePit(-3, 0, 1);
 
 /// Where something is seen, NaN: nothing is.
 using Height = std::function<float(float, float)>;
 
 /// 8 x 8 m of ground, and what lies below it.
 struct World {
-  PointCloud cloud{kPoints};
-  CandidatePoints below{kPoints};
-  GroundSurface surface{kPoints, kCells};
-  HoleEvidence evidence{kCells};
+  PointCloud cloud{kHolePoints};
+  CandidatePoints below{kHolePoints};
+  GroundSurface surface{kHolePoints, kHoleCells};
+  HoleEvidence evidence{kHoleCells};
 
   explicit World(const Height& height, std::size_t points = 30'000) {
     std::mt19937 random(3);
@@ -38,7 +35,7 @@ struct World {
       if (std::isnan(z)) continue;
       cloud.push_back(x, y, z + noise(random), 0);
     }
-    surface.build(cloud, kSettings);
+    surface.build(cloud, test::kGroundSettings);
   }
 
   /// Of the points more than 0.1 m below the surface.
@@ -49,7 +46,7 @@ struct World {
       if (depth < -0.1F) below.push_back(cloud, i, 0, 0, depth);
     }
     SeenCloud seen{.points = cloud};
-    if (knows_beams) seen.origins = {&kSensor, 1};
+    if (knows_beams) seen.origins = {&kBesideThePit, 1};
     evidence.build(seen, surface);
     std::vector<std::uint32_t> members(below.size());
     std::iota(members.begin(), members.end(), 0U);
@@ -58,19 +55,15 @@ struct World {
   }
 };
 
-bool in_square(float x, float y, float half_width) {
-  return std::abs(x) < half_width && std::abs(y) < half_width;
-}
-
 TEST(HoleEvidence, OfAPitWhoseFloorIsSeenIsItsInside) {
-  World world([](float x, float y) { return in_square(x, y, 0.5F) ? -0.3F : 0.0F; });
+  World world([](float x, float y) { return test::in_square(x, y, 0.5F) ? -0.3F : 0.0F; });
   EXPECT_EQ(world.of(true), Evidence::inside);
   EXPECT_EQ(world.of(false), Evidence::inside);
 }
 
 TEST(HoleEvidence, OfAPitWhoseFarWallAloneIsSeenIsTheWall) {
   World world([](float x, float y) {
-    if (!in_square(x, y, 0.8F)) return 0.0F;
+    if (!test::in_square(x, y, 0.8F)) return 0.0F;
     // The wall leans, so that it has points seen from above.
     return x > 0.6F ? -0.3F * (0.8F - x) / 0.2F - 0.1F : std::nanf("");
   });
@@ -80,14 +73,14 @@ TEST(HoleEvidence, OfAPitWhoseFarWallAloneIsSeenIsTheWall) {
 TEST(HoleEvidence, IsNoneWhereBeamsWouldHavePassedThroughGround) {
   // The points lie 1.5 m below ground that ends just above them: no beam from the sensor gets
   // there.
-  World world([](float x, float y) { return in_square(x, y, 0.3F) ? -1.5F : 0.0F; });
+  World world([](float x, float y) { return test::in_square(x, y, 0.3F) ? -1.5F : 0.0F; });
   EXPECT_EQ(world.of(true), Evidence::none);
   EXPECT_EQ(world.of(false), Evidence::inside) << "where nothing is known of beams it may be a pit";
 }
 
 TEST(HoleEvidence, IsNoneWhereTheRimIsHardlyKnown) {
   World world([](float x, float y) {
-    if (in_square(x, y, 0.5F)) return -0.3F;
+    if (test::in_square(x, y, 0.5F)) return -0.3F;
     const bool is_known = x < -1.2F || (x < 0 && std::abs(y) < 0.3F);
     return is_known ? 0.0F : std::nanf("");
   });
@@ -96,7 +89,7 @@ TEST(HoleEvidence, IsNoneWhereTheRimIsHardlyKnown) {
 }
 
 TEST(HoleEvidence, KnowsWhereBeamsWentBelowTheGround) {
-  World world([](float x, float y) { return in_square(x, y, 0.5F) ? -0.3F : 0.0F; });
+  World world([](float x, float y) { return test::in_square(x, y, 0.5F) ? -0.3F : 0.0F; });
   world.of(true);
   EXPECT_TRUE(world.evidence.is_void(world.surface.cell_at(0, 0)));
   EXPECT_FALSE(world.evidence.is_void(world.surface.cell_at(2, 2)));
