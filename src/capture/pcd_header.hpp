@@ -32,7 +32,7 @@ struct PcdHeader {
   std::size_t point_size = 0;  ///< bytes of one point
   PcdData data = PcdData::ascii;
   Eigen::Vector3f viewpoint = Eigen::Vector3f::Zero();  ///< metres
-  std::size_t body = 0;  ///< where the data begins in the file
+  std::size_t body = 0;                                 ///< where the data begins in the file
 
   /// The first field of one of these names, whatever their case.
   const PcdField* find(std::initializer_list<std::string_view> names) const;

@@ -1,0 +1,69 @@
+"""scree detect on real ground: python3 real_ground_test.py SCREE DATA [TEST ...]
+
+What is surely true of each recording stands beside its test.
+"""
+
+import json
+import os
+import sys
+
+from programs import ProgramTest, main
+
+SCREE, DATA = sys.argv[1:3]
+
+
+class RealGroundTest(ProgramTest):
+    def lists(self, *names):
+        source = os.path.join(DATA, *names)
+        if not os.path.exists(source):
+            self.skipTest(f"no such recording: {os.path.join(*names)}")
+        out = self.path("lists.jsonl")
+        self.done(SCREE, "detect", source, "--out", out)
+        with open(out) as file:
+            return [json.loads(line)["obstacles"] for line in file]
+
+    def cloud(self, *names):
+        return self.lists(*names)[0]
+
+    def of_kind(self, kind, obstacles):
+        return [obstacle for obstacle in obstacles if obstacle["kind"] == kind]
+
+    def test_off_road_scenes_have_bushes_and_no_deep_hole(self):
+        # By the photos, and by whoever recorded them. The sixth is a bare lot.
+        for number, bushes in ((0, 10), (3, 10), (5, 10), (7, 10), (9, 10), (11, 0)):
+            with self.subTest(scene=number):
+                found = self.cloud("real", "offroad", f"scene_{number}.pcd")
+                deep = [hole for hole in found if hole["height"] < -0.3]
+                self.assertEqual(deep, [])
+                tall = [each for each in found if each["height"] > 0.5]
+                self.assertGreaterEqual(len(tall), bushes)
+
+    def test_a_building_has_no_holes_in_its_floor(self):
+        for name in ("indoor_20hz.pcap", "indoor_dual_return.pcap"):
+            for obstacles in self.lists("vlp16", name):
+                self.assertEqual(self.of_kind("negative", obstacles), [], name)
+
+    def test_a_cliff_is_one_edge(self):
+        # Made so: level ground for x < 2, and level ground 1.5 m lower beyond.
+        edges = self.cloud("field", "dropoff", "cliff_1.5m.pcd")
+        self.assertEqual(len(edges), 1)
+        self.assertEqual(edges[0]["evidence"], "edge")
+        self.assertAlmostEqual(edges[0]["height"], -1.5, delta=0.1)
+        self.assertAlmostEqual(edges[0]["center"][0], 2.15, delta=0.2)
+        self.assertGreater(edges[0]["extent"][0], 9)
+
+    def test_a_ditch_is_a_hole_whatever_its_length(self):
+        # Made so: 2 m wide, 0.7 m deep; one crosses the cloud.
+        for name in ("ditch_6m.pcd", "ditch_40m.pcd"):
+            holes = self.of_kind("negative", self.cloud("field", "long_ditch_cloud", name))
+            self.assertEqual(len(holes), 1, name)
+            self.assertAlmostEqual(holes[0]["height"], -0.7, delta=0.1)
+
+    def test_a_log_with_ground_seen_below_it_is_an_obstacle(self):
+        # Made so: 0.3 m thick, its underside 0.3 m above the ground.
+        found = self.cloud("field", "overhang_cloud", "log_0.3m_thick_at_0.45m.pcd")
+        self.assertEqual(len(self.of_kind("positive", found)), 1)
+
+
+if __name__ == "__main__":
+    main(sys.argv[3:])
