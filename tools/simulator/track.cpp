@@ -115,10 +115,10 @@ std::vector<TrackPoint> draw_track(const TrackSettings& settings, std::uint64_t 
 }
 
 std::vector<Eigen::Vector2d> thinned(const std::vector<TrackPoint>& track) {
-  constexpr double kApart = 0.25;
+  constexpr double kThinnedApart = 0.25;
   std::vector<Eigen::Vector2d> points;
   for (const TrackPoint& point : track) {
-    if (points.empty() || (point.position - points.back()).norm() >= kApart) {
+    if (points.empty() || (point.position - points.back()).norm() >= kThinnedApart) {
       points.push_back(point.position);
     }
   }
