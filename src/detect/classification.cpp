@@ -65,6 +65,7 @@ Prediction classify(const Cluster& cluster, const Network& network) {
   Prediction prediction = network(cluster.features);
   if (hangs(cluster) || is_tall(cluster)) {
     prediction.positive = std::max(prediction.positive, kInTheWay);
+    prediction.negative = std::min(prediction.negative, 1 - kInTheWay);
   }
   return prediction;
 }

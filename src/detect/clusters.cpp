@@ -62,9 +62,9 @@ void Clusters::part_around(const Eigen::Vector2f& place, PointView points, std::
       return (points.x[k] - place.x()) * c + (points.y[k] - place.y()) * s > 0;
     };
     const auto first = members_.begin() + whole.begin, last = members_.begin() + whole.end;
-    const auto middle = std::stable_partition(first, last, is_left);
-    const std::array bounds = {first, std::stable_partition(first, middle, is_ahead), middle,
-                               std::stable_partition(middle, last, is_ahead), last};
+    const auto middle = std::partition(first, last, is_left);
+    const std::array bounds = {first, std::partition(first, middle, is_ahead), middle,
+                               std::partition(middle, last, is_ahead), last};
     for (std::size_t k = 0; k + 1 < bounds.size(); ++k) {
       if (bounds[k + 1] - bounds[k] < static_cast<std::ptrdiff_t>(min_size)) continue;
       add_part(whole, static_cast<std::uint32_t>(bounds[k] - members_.begin()),
