@@ -81,6 +81,7 @@ void classify(const ClusteredPoints& found, const Network& network, double min_c
               EnclosingPolygons& polygons, FixedVector<Obstacle>& obstacles, StageCounts& counts) {
   obstacles.clear();
   for (const Cluster& cluster : found.clusters.all()) {
+    if (cluster.is_terrace) continue;
     const Prediction prediction = classify(cluster, network);
     if (prediction.confidence() < static_cast<float>(min_confidence)) continue;
     const bool is_positive = prediction.kind() == ObstacleKind::positive;

@@ -183,20 +183,25 @@ GroundEdges::Beyond GroundEdges::look(std::size_t cell, int along_x, int along_y
       if (surface_->patch_area(at) < kLeastTerrace) continue;
       return {step, true};
     }
-    if (is_steep && !has_ground_next(at, offset)) return {step, true};
+    if (is_steep && !is_level_next(at, offset, level, rise)) return {step, true};
     if (unseen.step != 0 && goes_on_level(at, offset, rise, steps - i)) return {step, false};
     return {.is_gentle = true};
   }
   return unseen;
 }
 
-/// Whether ground is seen shortly beyond a cell: then what lies below its level is a reflection, or
-/// a narrow hole.
-bool GroundEdges::has_ground_next(std::size_t cell, std::ptrdiff_t offset) const {
-  const std::size_t next = cell + static_cast<std::size_t>(offset);
-  return surface_->has_neighbours(next) &&
-         (surface_->is_ground(next) ||
-          surface_->is_ground(next + static_cast<std::size_t>(offset)));
+/// Whether something is seen at the ground's level shortly beyond a cell: then what lies below that
+/// level is a reflection, or a narrow hole.
+bool GroundEdges::is_level_next(std::size_t cell, std::ptrdiff_t offset, float level,
+                                float rise) const {
+  constexpr int kCells = 2;
+  for (int i = 1; i <= kCells; ++i) {
+    const std::size_t next = cell + static_cast<std::size_t>(offset * i);
+    if (!surface_->has_neighbours(next)) return false;
+    if (surface_->points_in(next) == 0) continue;
+    if (surface_->top(next) - level - rise * static_cast<float>(i) > -kLeastStep) return true;
+  }
+  return false;
 }
 
 /// Whether the ground goes on from a cell as it does before the edge: a hollow rises again.
@@ -258,45 +263,24 @@ void GroundEdges::collect(std::size_t start, std::int8_t sign) {
   }
 }
 
-/// Makes one edge of cells, or two where a box would hold much of the ground: in the corner of a
+/// Makes one edge of cells, or two where a box would hold much that is no edge: in the corner of a
 /// bent one.
 void GroundEdges::add_edge(std::uint32_t begin, std::uint32_t end, int depth) {
-  constexpr float kMostGround = 0.3F;
-  constexpr int kMostSplits = 5;
-  const std::size_t columns = surface_->columns();
-  const std::size_t first = places_.size();
-  for (std::uint32_t i = begin; i < end; ++i) {
-    places_.push_back(surface_->x_of(cells_[i] % columns), surface_->y_of(cells_[i] / columns),
-                      ground_[cells_[i]], 0);
-  }
-  order_.resize(places_.size() - first);
-  std::iota(order_.begin(), order_.end(), static_cast<std::uint32_t>(first));
+  constexpr int kMostCuts = 5;
   GroundEdge edge;
-  edge.box = smallest_box(places_, {order_.data(), order_.size()});
+  edge.box = box_around(begin, end);
   const auto seen = static_cast<std::uint32_t>(
       std::count_if(cells_.begin() + begin, cells_.begin() + end,
                     [&](std::uint32_t cell) { return is_seen_[cell] != 0; }));
   edge.evidence = 2 * seen < end - begin ? Evidence::shadow : Evidence::edge;
-  if (edge.box.length < (edge.evidence == Evidence::edge ? kLeastLength : kLeastShadow)) {
-    places_.resize(first);
-    return;
-  }
-  if (depth < kMostSplits && edge.box.width > 2 * kStripWidth &&
-      ground_share(edge.box) > kMostGround) {
-    places_.resize(first);
-    const float c = std::cos(edge.box.yaw), s = std::sin(edge.box.yaw);
-    const auto middle =
-        std::partition(cells_.begin() + begin, cells_.begin() + end, [&](std::uint32_t cell) {
-          return (surface_->x_of(cell % columns) - edge.box.center_x) * c +
-                     (surface_->y_of(cell / columns) - edge.box.center_y) * s <
-                 0;
-        });
-    const auto half = static_cast<std::uint32_t>(middle - cells_.begin());
-    if (half > begin && half < end) {
-      add_edge(begin, half, depth + 1);
-      add_edge(half, end, depth + 1);
+  if (edge.box.length < (edge.evidence == Evidence::edge ? kLeastLength : kLeastShadow)) return;
+  if (depth < kMostCuts && edge.box.width > 2 * kStripWidth) {
+    const std::uint32_t middle = cut(begin, end, edge.box);
+    if (middle > begin && middle < end) {
+      add_edge(begin, middle, depth + 1);
+      add_edge(middle, end, depth + 1);
+      return;
     }
-    return;
   }
   values_.clear();
   for (std::uint32_t i = begin; i < end; ++i) {
@@ -305,11 +289,70 @@ void GroundEdges::add_edge(std::uint32_t begin, std::uint32_t end, int depth) {
     }
   }
   edge.step = quantile({values_.data(), values_.size()}, 0.5);
-  edge.ground = places_.z[first];
+  edge.ground = ground_[cells_[begin]];
   edge.box.width = std::max(edge.box.width, kLeastWidth);
-  edge.begin = static_cast<std::uint32_t>(first);
+  edge.begin = static_cast<std::uint32_t>(places_.size());
+  add_places(begin, end);
   edge.end = static_cast<std::uint32_t>(places_.size());
-  if (!edges_.push_back(edge)) places_.resize(first);
+  if (!edges_.push_back(edge)) places_.resize(edge.begin);
+}
+
+void GroundEdges::add_places(std::uint32_t begin, std::uint32_t end) {
+  const std::size_t columns = surface_->columns();
+  for (std::uint32_t i = begin; i < end; ++i) {
+    places_.push_back(surface_->x_of(cells_[i] % columns), surface_->y_of(cells_[i] / columns),
+                      ground_[cells_[i]], 0);
+  }
+}
+
+OrientedBox GroundEdges::box_around(std::uint32_t begin, std::uint32_t end) {
+  const std::size_t first = places_.size();
+  add_places(begin, end);
+  order_.resize(places_.size() - first);
+  std::iota(order_.begin(), order_.end(), static_cast<std::uint32_t>(first));
+  const OrientedBox box = smallest_box(places_, {order_.data(), order_.size()});
+  places_.resize(first);
+  return box;
+}
+
+/// Parts cells by a line across or along their box, where the boxes of both parts are smallest
+/// together. A ring, the edge of a pit, stays whole.
+/// @return the first of the second part; `end` where no cut is worth it
+std::uint32_t GroundEdges::cut(std::uint32_t begin, std::uint32_t end, const OrientedBox& box) {
+  constexpr float kMostGround = 0.3F;  // share of a box that may be ground
+  constexpr float kWorthIt = 0.6F;     // share of the box's area that is left
+  const float strip = 1.25F * kStripWidth;
+  const auto area = [](const OrientedBox& each) {
+    return each.length * std::max(each.width, kLeastWidth);
+  };
+  const auto part = [&](bool along, float place) {
+    const float c = std::cos(box.yaw), s = std::sin(box.yaw);
+    const std::size_t columns = surface_->columns();
+    const auto middle =
+        std::partition(cells_.begin() + begin, cells_.begin() + end, [&](std::uint32_t cell) {
+          const float x = surface_->x_of(cell % columns) - box.center_x;
+          const float y = surface_->y_of(cell / columns) - box.center_y;
+          return (along ? x * c + y * s : y * c - x * s) < place;
+        });
+    return static_cast<std::uint32_t>(middle - cells_.begin());
+  };
+  float least = std::numeric_limits<float>::infinity(), best_place = 0;
+  bool best_along = true;
+  for (const bool along : {true, false}) {
+    const float half = (along ? box.length : box.width) / 2;
+    for (const float place : {strip - half, -half / 3, 0.0F, half / 3, half - strip}) {
+      const std::uint32_t middle = part(along, place);
+      if (middle == begin || middle == end) continue;
+      const float left = area(box_around(begin, middle)) + area(box_around(middle, end));
+      if (left >= least) continue;
+      least = left;
+      best_along = along;
+      best_place = place;
+    }
+  }
+  const bool is_worth_it =
+      least < kWorthIt * area(box) || (std::isfinite(least) && ground_share(box) > kMostGround);
+  return is_worth_it ? part(best_along, best_place) : end;
 }
 
 /// Share of a box in which ground was seen.

@@ -152,11 +152,26 @@ void SurfaceMethod::measure_clusters(const PointCloud& points) {
     cluster.ground = surface_.height(cluster.box.center_x, cluster.box.center_y);
     cluster.features = measure(kept_, members);
     context_.measure(cluster, members, kept_, surface_, beam_grid_);
+    cluster.is_terrace = is_terrace(cluster);
     const bool is_below = cluster.features[max_height] < 0;
     if (is_below && cluster.features[through_share] < kMostBelowGround) {
       cluster.evidence = evidence_.of(members, kept_, surface_);
     }
   }
+}
+
+/// Whether a cluster is ground on a higher level, whose edge alone is in the way.
+bool SurfaceMethod::is_terrace(const Cluster& cluster) const {
+  constexpr float kArea = 20;     // square metres: the roof of a car has a third of it
+  constexpr float kHeight = 1;    // metres: lower than the roof of anything that drives
+  constexpr float kShare = 0.7F;  // of its points
+  if (cluster.features[max_height] > kHeight) return false;
+  const auto members = clusters_.members(cluster);
+  const auto level = std::ranges::count_if(members, [&](std::uint32_t i) {
+    const std::size_t cell = surface_.cell_at(kept_.points.x[i], kept_.points.y[i]);
+    return surface_.patch_area(cell) >= kArea;
+  });
+  return static_cast<float>(level) >= kShare * static_cast<float>(members.size());
 }
 
 }  // namespace scree

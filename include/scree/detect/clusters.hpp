@@ -20,6 +20,7 @@ struct Cluster {
   float ground = 0;                  ///< z of the ground around it, metres
   Features features{};
   Evidence evidence = Evidence::none;  ///< that it is a hole
+  bool is_terrace = false;             ///< ground on a higher level
 };
 
 /// The clusters of one cloud with their points.

@@ -51,11 +51,14 @@ private:
   bool fit(std::size_t cell, Plane& plane) const;
   int steps_inside(std::size_t cell, int along_x, int along_y) const;
   Beyond look(std::size_t cell, int along_x, int along_y, const Plane& plane) const;
-  bool has_ground_next(std::size_t cell, std::ptrdiff_t offset) const;
+  bool is_level_next(std::size_t cell, std::ptrdiff_t offset, float level, float rise) const;
   bool goes_on_level(std::size_t cell, std::ptrdiff_t offset, float rise, int steps) const;
   void mark(std::size_t cell, int along_x, int along_y, const Beyond& beyond, float ground);
   void collect(std::size_t start, std::int8_t sign);
   void add_edge(std::uint32_t begin, std::uint32_t end, int depth);
+  void add_places(std::uint32_t begin, std::uint32_t end);
+  OrientedBox box_around(std::uint32_t begin, std::uint32_t end);
+  std::uint32_t cut(std::uint32_t begin, std::uint32_t end, const OrientedBox& box);
   float ground_share(const OrientedBox& box) const;
 
   const GroundSurface* surface_ = nullptr;

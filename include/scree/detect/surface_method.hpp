@@ -51,6 +51,7 @@ private:
   void gather_candidates(StageCounts& counts);
   void cluster(StageCounts& counts);
   void measure_clusters(const PointCloud& points);
+  bool is_terrace(const Cluster& cluster) const;
 
   SurfaceSettings settings_;
   float highest_;  // metres above the ground
