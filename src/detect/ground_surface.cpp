@@ -29,7 +29,8 @@ GroundSurface::GroundSurface(std::size_t max_points, std::size_t max_cells)
       patches_(max_cells),
       windows_(max_cells),
       trend_(max_cells),
-      fill_(max_cells) {}
+      fill_(max_cells),
+      depressions_(max_cells) {}
 
 void GroundSurface::build(PointView points, const GroundSurfaceSettings& settings) {
   // Cells too small for the density of the points leave the ground in tatters.
@@ -65,6 +66,7 @@ void GroundSurface::find_ground(const GroundSurfaceSettings& settings) {
   }
   join_patches(settings.tolerance);
   if (has_trend) add_trend(1, {&seen_, &smooth_});
+  if (!has_trend && depressions_.remove({columns_, rows_, cell_, smooth_.data()}, ground_)) span();
 }
 
 void GroundSurface::lay_out(PointView points, float cell_size) {
@@ -270,10 +272,7 @@ void GroundSurface::join_patches(float tolerance) {
     for (std::size_t cell = 0; cell < cells; ++cell) {
       ground_[cell] = patch_[cell] != kNoLabel && patches_[patch_[cell]].is_ground ? 1 : 0;
     }
-    for (std::size_t cell = 0; cell < cells; ++cell) {
-      if (ground_[cell] != 0) smooth_[cell] = blurred(cell);
-    }
-    fill_.fill(columns_, rows_, ground_.data(), smooth_.data());
+    span();
     if (round == kRounds) return;
     for (Patch& patch : patches_) patch.residual = 0;
     for (std::size_t cell = 0; cell < cells; ++cell) {
@@ -288,6 +287,14 @@ void GroundSurface::join_patches(float tolerance) {
     }
     if (!joined) return;
   }
+}
+
+/// Spans the surface from the ground.
+void GroundSurface::span() {
+  for (std::size_t cell = 0; cell < ground_.size(); ++cell) {
+    if (ground_[cell] != 0) smooth_[cell] = blurred(cell);
+  }
+  fill_.fill(columns_, rows_, ground_.data(), smooth_.data());
 }
 
 float GroundSurface::height(float x, float y) const {

@@ -9,6 +9,7 @@
 
 #include "scree/core/fixed_vector.hpp"
 #include "scree/core/point_cloud.hpp"
+#include "scree/detect/depressions.hpp"
 #include "scree/detect/ground_trend.hpp"
 #include "scree/detect/label.hpp"
 #include "scree/detect/planar_windows.hpp"
@@ -103,6 +104,7 @@ private:
   void add_trend(float sign, std::initializer_list<FixedVector<float>*> rasters) const;
   void join_trend(float tolerance);
   void join_patches(float tolerance);
+  void span();
   /// Mean height difference of the two neighbours of a cell (Sobel's 1-2-1 across), metres.
   float rise(std::size_t cell, std::size_t along, std::size_t across) const;
   float blurred(std::size_t cell) const;
@@ -125,6 +127,7 @@ private:
   PlanarWindows windows_;
   GroundTrend trend_;
   RasterFill fill_;
+  Depressions depressions_;
 };
 
 }  // namespace scree

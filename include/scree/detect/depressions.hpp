@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "scree/core/fixed_vector.hpp"
+
+namespace scree {
+
+/// A raster of heights, row by row.
+struct HeightRaster {
+  std::size_t columns, rows;
+  float cell_size;       ///< metres
+  const float* heights;  ///< metres, all known
+};
+
+/// Finds craters whose flanks are nowhere too steep to be ground: closed depressions, deeper than
+/// 0.25 m below the lowest place of their rim, where a tenth of the area slopes by 17 degrees or
+/// more. Hollows of the ground are gentler. Water is let in from the raster's edge, lowest places
+/// first (priority flood; Barnes, Lehman and Mulla 2014), and what it must rise to is the rim.
+class Depressions {
+public:
+  explicit Depressions(std::size_t max_cells);
+
+  /// Takes the cells of each such depression from the ground.
+  /// @return whether there is any
+  bool remove(const HeightRaster& raster, FixedVector<std::uint8_t>& ground);
+
+private:
+  struct Shore {
+    float level;
+    std::uint32_t cell;
+    bool operator<(const Shore& other) const { return level > other.level; }  // lowest first
+  };
+
+  void flood(const HeightRaster& raster);
+  void reach(std::size_t cell, float level, const HeightRaster& raster);
+  void collect(std::size_t start, const HeightRaster& raster);
+  bool is_crater(const HeightRaster& raster, const FixedVector<std::uint8_t>& ground);
+
+  FixedVector<float> level_;           // of the water in each cell
+  FixedVector<Shore> shore_;           // heap of the cells next to dry ones
+  FixedVector<std::uint8_t> is_done_;  // flooded, then collected
+  FixedVector<std::uint32_t> cells_;   // of one depression
+  FixedVector<float> slopes_;          // of these
+};
+
+}  // namespace scree
