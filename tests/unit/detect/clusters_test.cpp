@@ -5,7 +5,9 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <vector>
 
+#include "allocation_counter.hpp"
 #include "scree/detect/ground_height.hpp"
 #include "scree/detect/label.hpp"
 
@@ -141,6 +143,23 @@ TEST(GroundHeight, WidensAnEmptyRingAndSaysWhenThereIsNoGround) {
   EXPECT_EQ(ground.around(far, yard.cells, yard.is_edge, -7), 1);
   far.center_x = 1000;
   EXPECT_EQ(ground.around(far, yard.cells, yard.is_edge, -7), -7);
+}
+
+TEST(Clusters, AnObstacleAroundAPlaceIsPartedIntoQuartersWithoutAllocating) {
+  const CandidatePoints ring = flank(0.5F, 2);
+  Clusters clusters(360);
+  const std::vector<std::uint32_t> labels(360, 0), sizes = {360};
+  clusters.gather(ring, labels, sizes, 1);
+  const std::size_t before = test::allocations();
+  clusters.part_around({0.1F, 0}, ring.points, 4);
+  EXPECT_EQ(test::allocations(), before);
+  ASSERT_EQ(clusters.all().size(), 4U);
+  std::size_t points = 0;
+  for (const Cluster& part : clusters.all()) {
+    EXPECT_GE(part.box.distances()(0.1F, 0), 0);
+    points += part.end - part.begin;
+  }
+  EXPECT_EQ(points, 360U);
 }
 
 }  // namespace

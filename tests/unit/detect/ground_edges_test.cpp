@@ -99,15 +99,40 @@ TEST_F(GroundEdgesTest, ReflectionsBelowSeenGroundAreNone) {
   EXPECT_TRUE(edges_of(cloud).empty());
 }
 
-TEST_F(GroundEdgesTest, ACornerIsPartedSoThatItsBoxesHoldLittleGround) {
-  // The ground ends at a corner at (2, 3).
-  const auto edges =
-      edges_of(shaped([](float x, float y) { return x < 2 && y < 3 ? 0.0F : -0.6F; }));
-  ASSERT_GE(edges.size(), 2U);
-  for (const GroundEdge& edge : edges) {
-    EXPECT_LT(edge.step, -0.5);
-    EXPECT_LT(edge.box.width, 2.5F);
+TEST_F(GroundEdgesTest, ReflectionsBelowGroundThatIsSeenThinlyAreNone) {
+  // Four points in three cells, so that some cells hold reflections alone.
+  std::mt19937 random(11);
+  std::uniform_real_distribution<float> place(-4, 4), within(0, 2), depth(-1.6F, -0.35F);
+  PointCloud cloud(kEdgePoints);
+  for (int i = 0; i < 14'000; ++i) cloud.push_back(place(random), place(random), 0, 0);
+  for (int i = 0; i < 700; ++i) {
+    cloud.push_back(within(random), within(random) - 1, depth(random), 0);
   }
+  EXPECT_TRUE(edges_of(cloud).empty());
+}
+
+TEST_F(GroundEdgesTest, ACornerIsPartedIntoItsTwoSides) {
+  // The ground ends at a corner at (2, 3), or it ends but for a corner there.
+  for (const bool is_outer : {true, false}) {
+    const auto edges = edges_of(shaped([&](float x, float y) {
+      const bool is_ground = is_outer ? x < 2 && y < 3 : x < 2 || y < 3;
+      return is_ground ? 0.0F : -0.6F;
+    }));
+    ASSERT_GE(edges.size(), 2U) << is_outer;
+    EXPECT_LE(edges.size(), 3U) << is_outer;
+    for (const GroundEdge& edge : edges) {
+      EXPECT_LT(edge.step, -0.5);
+      EXPECT_LT(edge.box.width, 0.8F);
+    }
+  }
+}
+
+TEST_F(GroundEdgesTest, TheEdgeOfAWidePitStaysWhole) {
+  const auto edges = edges_of(
+      shaped([](float x, float y) { return test::in_square(x + 2, y, 2.5F) ? -0.8F : 0.0F; }));
+  ASSERT_EQ(edges.size(), 1U);
+  EXPECT_NEAR(edges[0].box.length, 5, 0.5);
+  EXPECT_NEAR(edges[0].box.width, 5, 0.5);
 }
 
 TEST_F(GroundEdgesTest, WhereNothingIsSeenLostBeamsTellOfAShadow) {
