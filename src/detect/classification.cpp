@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "scree/detect/obstacle_box.hpp"
 
@@ -70,9 +71,21 @@ Prediction classify(const Cluster& cluster, const Network& network) {
   return prediction;
 }
 
-bool is_part_of(const Obstacle& edge, const Obstacle& other) {
+/// Whether an obstacle covers the middle of an edge and most of its length, as a hole that it is
+/// the rim of.
+bool covers(const Obstacle& obstacle, const Obstacle& edge) {
   constexpr double kNear = 0.3;  // metres
-  return distance_to_box(other, edge.center) <= kNear || distance_to_box(edge, other.center) <= 0;
+  return 2 * obstacle.extent.x() >= edge.extent.x() &&
+         distance_to_box(obstacle, edge.center) <= kNear;
+}
+
+/// Whether an obstacle is a piece of what an edge says as a whole.
+bool is_piece_of(const Obstacle& obstacle, const Obstacle& edge) {
+  constexpr double kNear = 0.15;   // metres
+  constexpr double kHigher = 1.5;  // a rock that stands at an edge is higher than it
+  return obstacle.extent.x() < edge.extent.x() &&
+         std::abs(obstacle.height) <= kHigher * std::abs(edge.height) &&
+         distance_to_box(edge, obstacle.center) <= kNear;
 }
 
 }  // namespace
@@ -98,15 +111,26 @@ void classify(const ClusteredPoints& found, const Network& network, double min_c
 
 void add_edges(const GroundEdges& edges, EnclosingPolygons& polygons,
                FixedVector<Obstacle>& obstacles, StageCounts& counts) {
-  const std::size_t before = obstacles.size();
+  std::size_t before = obstacles.size();
   for (const GroundEdge& edge : edges.all()) {
     Obstacle obstacle = obstacle_of(edge);
-    const auto has_part = [&](const Obstacle& other) { return is_part_of(obstacle, other); };
-    if (std::any_of(obstacles.begin(), obstacles.begin() + before, has_part)) continue;
+    const auto others = std::span(obstacles.data(), before);
+    if (std::ranges::any_of(others, [&](const Obstacle& o) { return covers(o, obstacle); })) {
+      continue;
+    }
+    const auto last = std::remove_if(obstacles.begin(), obstacles.begin() + before,
+                                     [&](const Obstacle& o) { return is_piece_of(o, obstacle); });
+    const auto gone = static_cast<std::size_t>(obstacles.begin() + before - last);
+    std::copy(obstacles.begin() + before, obstacles.end(), last);
+    obstacles.resize(obstacles.size() - gone);
+    before -= gone;
+    counts.obstacles -= gone;
     ++counts.obstacles;
-    obstacle.id = static_cast<std::int64_t>(obstacles.size()) + 1;
     obstacle.footprint = polygons.around(edges.places(), edge.begin, edge.end);
     if (!obstacles.push_back(obstacle)) ++counts.obstacles_dropped;
+  }
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    obstacles[i].id = static_cast<std::int64_t>(i) + 1;
   }
 }
 

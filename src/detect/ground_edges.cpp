@@ -21,6 +21,7 @@ constexpr float kClutter = 0.05F;      // metres: what is higher and no ground i
 constexpr float kStripWidth = 0.4F;    // metres beyond an edge that belong to it
 constexpr float kLeastLength = 0.5F;   // metres
 constexpr float kLeastShadow = 2;      // metres: shorter ones are those of low bumps
+constexpr float kLeastFilled = 0.5F;   // share of the strip along an edge that is marked
 constexpr float kLeastWidth = 0.3F;    // of an edge's box, metres
 constexpr float kLeastTerrace = 1.5F;  // square metres of level ground above a step
 constexpr float kDense = 60;           // cells of ground up to 0.6 m around one
@@ -164,7 +165,9 @@ GroundEdges::Beyond GroundEdges::look(std::size_t cell, int along_x, int along_y
     if (surface_->points_in(at) == 0) {
       if (beams_->lost_beams(at) < kFewestBeams) continue;
       const float depth = level - beams_->lowest_beam(at);
-      if (depth >= kLeastStep && plane.cells >= kDense) unseen.step = std::min(unseen.step, -depth);
+      if (depth < kLeastStep || plane.cells < kDense) continue;
+      if (unseen.step == 0) unseen.cells = i;
+      unseen.step = std::min(unseen.step, -depth);
       continue;
     }
     // Where ground is seen, what lies below it is a reflection.
@@ -181,10 +184,12 @@ GroundEdges::Beyond GroundEdges::look(std::size_t cell, int along_x, int along_y
     if (step > 0) {
       if (!is_steep) return {};
       if (surface_->patch_area(at) < kLeastTerrace) continue;
-      return {step, true};
+      return {.step = step, .is_seen = true};
     }
-    if (is_steep && !is_level_next(at, offset, level, rise)) return {step, true};
-    if (unseen.step != 0 && goes_on_level(at, offset, rise, steps - i)) return {step, false};
+    if (is_steep && !is_level_next(at, offset, level, rise)) return {.step = step, .is_seen = true};
+    if (unseen.step != 0 && goes_on_level(at, offset, rise, steps - i)) {
+      return {.step = step, .cells = unseen.cells};
+    }
     return {.is_gentle = true};
   }
   return unseen;
@@ -227,8 +232,9 @@ void GroundEdges::mark(std::size_t cell, int along_x, int along_y, const Beyond&
   const auto offset =
       static_cast<std::ptrdiff_t>(along_x) +
       static_cast<std::ptrdiff_t>(along_y) * static_cast<std::ptrdiff_t>(surface_->columns());
-  const int wide =
-      std::min(static_cast<int>(kStripWidth / stride), steps_inside(cell, along_x, along_y));
+  const int strip = static_cast<int>(kStripWidth / stride);
+  // Where nothing is seen, the edge lies between the last ground and the first beam that passed.
+  const int wide = std::min(std::max(strip, beyond.cells), steps_inside(cell, along_x, along_y));
   for (int i = 1; i <= wide; ++i) {
     const std::size_t at = cell + static_cast<std::size_t>(offset * i);
     if (surface_->is_ground(at)) continue;
@@ -240,7 +246,7 @@ void GroundEdges::mark(std::size_t cell, int along_x, int along_y, const Beyond&
 
 /// Collects the marked cells of one sign that hang together, small gaps bridged.
 void GroundEdges::collect(std::size_t start, std::int8_t sign) {
-  constexpr float kGap = 0.4F;  // metres
+  constexpr float kGap = 1;  // metres
   const auto reach = static_cast<std::ptrdiff_t>(std::lround(kGap / surface_->cell_size()));
   const auto columns = static_cast<std::ptrdiff_t>(surface_->columns());
   const auto rows = static_cast<std::ptrdiff_t>(surface_->rows());
@@ -274,6 +280,10 @@ void GroundEdges::add_edge(std::uint32_t begin, std::uint32_t end, int depth) {
                     [&](std::uint32_t cell) { return is_seen_[cell] != 0; }));
   edge.evidence = 2 * seen < end - begin ? Evidence::shadow : Evidence::edge;
   if (edge.box.length < (edge.evidence == Evidence::edge ? kLeastLength : kLeastShadow)) return;
+  // Single cells in a row, as lost shots mark them, make no edge.
+  const float of_whole = edge.box.length * kStripWidth / surface_->cell_size();
+  const float of_marked = static_cast<float>(end - begin) * surface_->cell_size();
+  if (of_marked < kLeastFilled * of_whole) return;
   if (depth < kMostCuts && edge.box.width > 2 * kStripWidth) {
     const std::uint32_t middle = cut(begin, end, edge.box);
     if (middle > begin && middle < end) {

@@ -16,7 +16,8 @@ namespace scree {
 void classify(const ClusteredPoints& found, const Network& network, double min_confidence,
               EnclosingPolygons& polygons, FixedVector<Obstacle>& obstacles, StageCounts& counts);
 
-/// Adds the edges that are no part of an obstacle that is there already.
+/// Adds the edges that no obstacle covers. Obstacles that are pieces of an edge go: it stands for
+/// them.
 void add_edges(const GroundEdges& edges, EnclosingPolygons& polygons,
                FixedVector<Obstacle>& obstacles, StageCounts& counts);
 

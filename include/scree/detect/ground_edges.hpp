@@ -41,6 +41,7 @@ private:
     float step = 0;          ///< metres, 0: no edge
     bool is_seen = false;    ///< what lies there
     bool is_gentle = false;  ///< the ground goes on, lower and not steep
+    int cells = 0;           ///< to the first beam that passed below, where nothing is seen
   };
   struct Plane {
     float height = 0, rise_x = 0, rise_y = 0;  ///< metres, metres a cell
