@@ -30,7 +30,7 @@ PointCloud seen_ground(const std::function<float(float, float)>& height, float s
   return cloud;
 }
 
-float flat(float, float) {
+float level_ground(float, float) {
   return 0;
 }
 
@@ -69,7 +69,7 @@ protected:
 };
 
 TEST_F(GridMakerTest, GroundThatWasSeenIsFreeAndNoneBeyondIt) {
-  look(seen_ground(flat));
+  look(seen_ground(level_ground));
   for (const double x : {-3.9, -0.1, 0.1, 2.5, 3.7}) EXPECT_EQ(state(x, 1), CellState::free) << x;
   for (const double x : {-5.0, 4.3, 5.9}) {
     EXPECT_EQ(state(x, 1), CellState::unknown) << x;
@@ -99,7 +99,7 @@ TEST_F(GridMakerTest, WhatStandsOrLiesOffTheGroundUnpublishedIsUnknown) {
 }
 
 TEST_F(GridMakerTest, AThinStickMakesItsCellUnknown) {
-  PointCloud cloud = seen_ground(flat);
+  PointCloud cloud = seen_ground(level_ground);
   cloud.push_back(1.1F, 1.1F, 0.4F, 0);
   look(cloud);
   EXPECT_EQ(state(1.1, 1.1), CellState::unknown);
@@ -122,14 +122,14 @@ TEST_F(GridMakerTest, CellsOfAPublishedObstacleSayItsKindAndTheGroundAroundIt) {
 
 TEST_F(GridMakerTest, APublishedObstacleCoversAlsoWhereNothingWasSeen) {
   list_.obstacles.push_back(box_at(ObstacleKind::negative, 5, 0, 1));
-  look(seen_ground(flat));
+  look(seen_ground(level_ground));
   EXPECT_EQ(state(4.9, 0.1), CellState::drop);
   EXPECT_NEAR(ground(4.9, 0.1), 0, 0.02);
 }
 
 TEST_F(GridMakerTest, AFootprintSmallerThanACellCoversIt) {
   list_.obstacles.push_back(box_at(ObstacleKind::positive, 1.05, 1.05, 0.02));
-  look(seen_ground(flat));
+  look(seen_ground(level_ground));
   EXPECT_EQ(state(1.05, 1.05), CellState::occupied);
   EXPECT_EQ(std::ranges::count(grid_->state, CellState::occupied), 1);
 }
@@ -138,7 +138,7 @@ TEST_F(GridMakerTest, ATurnedFootprintCoversWhatItTouchesAndNoMore) {
   Obstacle diamond = box_at(ObstacleKind::positive, 0, 0, 1);
   diamond.yaw = radians(45);
   list_.obstacles.push_back(diamond);
-  look(seen_ground(flat));
+  look(seen_ground(level_ground));
   EXPECT_EQ(state(0.5, 0.1), CellState::occupied);
   EXPECT_EQ(state(-0.1, -0.5), CellState::occupied);
   EXPECT_EQ(state(0.5, 0.5), CellState::free) << "in its box, not in it";
@@ -147,7 +147,7 @@ TEST_F(GridMakerTest, ATurnedFootprintCoversWhatItTouchesAndNoMore) {
 TEST_F(GridMakerTest, WhatIsNotAPlaceAtAllOrFarAwayCoversNothing) {
   list_.obstacles.push_back(box_at(ObstacleKind::positive, std::nan(""), 0, 1));
   list_.obstacles.push_back(box_at(ObstacleKind::negative, 1e12, -1e12, 1));
-  look(seen_ground(flat));
+  look(seen_ground(level_ground));
   EXPECT_EQ(std::ranges::count(grid_->state, CellState::occupied), 0);
   EXPECT_EQ(std::ranges::count(grid_->state, CellState::drop), 0);
 }
@@ -179,7 +179,7 @@ TEST_F(GridMakerTest, LiesInOdomWhereverTheSurfaceIs) {
 }
 
 TEST_F(GridMakerTest, CellsOfTheSurfaceWiderThanItsOwnTellNothing) {
-  look(seen_ground(flat, 0.25F));
+  look(seen_ground(level_ground, 0.25F));
   ASSERT_GT(surface_.cell_size(), 0.2F);
   EXPECT_EQ(std::ranges::count(grid_->state, CellState::free), 0);
   list_.obstacles.push_back(box_at(ObstacleKind::positive, 1, 1, 0.5));
@@ -187,7 +187,7 @@ TEST_F(GridMakerTest, CellsOfTheSurfaceWiderThanItsOwnTellNothing) {
   EXPECT_EQ(state(1, 1), CellState::occupied);
   GridSettings wide = kSettings;
   wide.cell_size = 0.5;
-  look(seen_ground(flat, 0.25F), wide);
+  look(seen_ground(level_ground, 0.25F), wide);
   EXPECT_EQ(state(-1.2, 1.2), CellState::free);
 }
 
@@ -195,7 +195,7 @@ TEST_F(GridMakerTest, NeverHasMoreCellsThanItHasRoomFor) {
   GridSettings settings = kSettings;
   settings.cell_size = 0.1;
   settings.reach = 15;
-  look(seen_ground(flat), settings);
+  look(seen_ground(level_ground), settings);
   EXPECT_EQ(grid_->columns, ObstacleGrid::kMostCells);
   EXPECT_EQ(grid_->state.size(), grid_->cells());
   EXPECT_EQ(grid_->ground.size(), grid_->cells());
@@ -209,7 +209,7 @@ TEST_F(GridMakerTest, NothingSeenIsAllUnknown) {
 
 TEST_F(GridMakerTest, AllocatesNothing) {
   list_.obstacles.push_back(box_at(ObstacleKind::positive, 1, 1, 0.5));
-  look(seen_ground(flat));
+  look(seen_ground(level_ground));
   ObstacleGrid copy;
   const std::size_t before = test::allocations();
   make();
