@@ -70,10 +70,9 @@ void DetectorWorker::process(const TimedSweep& sweep) {
     lists_dropped_.fetch_add(1, std::memory_order_relaxed);
     return;
   }
-  timed->copy_from(*list);
+  timed->copy_from(*list, report);
   timed->arrival_ns = sweep.arrival_ns;
   timed->detector_ns = end_ns - begin_ns;
-  timed->report = report;
   lists_.push(timed);
 }
 

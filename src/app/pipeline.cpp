@@ -59,7 +59,13 @@ Pipeline::Pipeline(const Settings& settings, const Networks& networks)
                      static_cast<std::size_t>(settings.memory.obstacles)),
       sweep_(static_cast<std::size_t>(settings.memory.sweep_points)),
       found_(static_cast<std::size_t>(settings.memory.obstacles)),
-      list_(static_cast<std::size_t>(settings.memory.obstacles)) {}
+      list_(static_cast<std::size_t>(settings.memory.obstacles)) {
+  if (!settings.lcm.grid || map_detector_.surface_method() == nullptr) return;
+  grid_maker_.emplace(
+      GridSettings{.cell_size = settings.lcm.grid_cell,
+                   .reach = settings.map.search_reach,
+                   .body_height = static_cast<float>(settings.detect_map.surface.body_height)});
+}
 
 const ObstacleList& Pipeline::process(const Sweep& sweep) {
   timer_.start();
@@ -69,6 +75,7 @@ const ObstacleList& Pipeline::process(const Sweep& sweep) {
     tracker_.set_next_id(sweep_tracker_.next_id());
   }
   list_.stamp_ns = sweep.end_ns;
+  grid_ = nullptr;
   if (uses_map_) {
     mapper_->add(sweep, *sensors_, timer_);
     if (mapper_->was_reset()) tracker_.clear();
@@ -93,6 +100,10 @@ void Pipeline::detect_in_map() {
   list_.pose = mapper_->to_odom() * mapper_->pose();
   for (Obstacle& obstacle : list_.obstacles) move_into_parent(mapper_->to_odom(), obstacle);
   timer_.done(Stage::tracking);
+  if (!grid_maker_) return;
+  grid_ = &grid_maker_->make(map_detector_.surface_method()->ground(),
+                             mapper_->to_odom() * cloud_in_map, list_);
+  timer_.done(Stage::grid);
 }
 
 void Pipeline::detect_in_sweep(const Sweep& sweep) {

@@ -79,6 +79,9 @@ void PublisherWorker::publish(TimedObstacleList& timed) {
   if (!is_taken) return;
   outputs_.toggle_heartbeat();
   if (latency_ns <= HealthWatch::kOldSweep) last_list_ns_ = now_ns;
+  if (timed.grid.empty()) return;
+  timed.grid.stamp_ns = timed.list.stamp_ns;
+  if (!publisher_.publish(timed.grid)) ++health_.lists_failed;
 }
 
 void PublisherWorker::update_health(std::int64_t now_ns) {

@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cmath>
 #include <initializer_list>
+#include <span>
 #include <string_view>
 #include <type_traits>
 
@@ -75,17 +76,65 @@ void append(std::string& text, const Obstacle& obstacle) {
   text += '}';
 }
 
-}  // namespace
-
-void append_json_line(const ObstacleList& list, std::string& text) {
-  const Eigen::Quaterniond& q = list.pose.rotation;
-  text += "{\"stamp_ns\": ";
-  append(text, list.stamp_ns);
-  text += ", \"pose\": {\"p\": ";
-  append(text, list.pose.translation);
+void append(std::string& text, const Pose& pose) {
+  const Eigen::Quaterniond& q = pose.rotation;
+  text += "{\"p\": ";
+  append(text, pose.translation);
   text += ", \"q\": ";
   append(text, {q.w(), q.x(), q.y(), q.z()});
-  text += "}, \"obstacles\": [";
+  text += '}';
+}
+
+/// One row of a grid, or any other stretch of it.
+void append(std::string& text, std::span<const CellState> states) {
+  constexpr std::string_view kSigns = "?.#v";  // by CellState
+  static_assert(kSigns.size() == kCellStates);
+  text += '"';
+  for (std::size_t begin = 0, end = 0; begin < states.size(); begin = end) {
+    while (end < states.size() && states[end] == states[begin]) ++end;
+    if (end - begin > 1) append(text, end - begin);
+    text += kSigns[static_cast<std::size_t>(states[begin])];
+  }
+  text += '"';
+}
+
+}  // namespace
+
+void append_json_line(const ObstacleGrid& grid, std::string& text) {
+  text += "{\"stamp_ns\": ";
+  append(text, grid.stamp_ns);
+  text += ", \"pose\": ";
+  append(text, grid.pose);
+  text += ", \"origin\": ";
+  append(text, {grid.origin.x(), grid.origin.y()});
+  text += ", \"cell_size\": ";
+  append(text, grid.cell_size);
+  text += ", \"columns\": ";
+  append(text, grid.columns);
+  text += ", \"rows\": ";
+  append(text, grid.rows);
+  text += ", \"states\": [";
+  for (std::size_t row = 0; row < grid.rows; ++row) {
+    if (row > 0) text += ", ";
+    append(text, std::span(grid.state.data() + row * grid.columns, grid.columns));
+  }
+  text += "], \"ground\": [";
+  std::string_view separator;
+  for (const std::int16_t height : grid.ground) {
+    if (height == ObstacleGrid::kNoGround) continue;
+    text += separator;
+    append(text, height);
+    separator = ", ";
+  }
+  text += "]}\n";
+}
+
+void append_json_line(const ObstacleList& list, std::string& text) {
+  text += "{\"stamp_ns\": ";
+  append(text, list.stamp_ns);
+  text += ", \"pose\": ";
+  append(text, list.pose);
+  text += ", \"obstacles\": [";
   std::string_view separator;
   for (const Obstacle& obstacle : list.obstacles) {
     text += separator;

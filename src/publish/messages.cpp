@@ -6,8 +6,21 @@
 namespace scree {
 namespace {
 
+static_assert(grid_t::UNKNOWN == static_cast<int>(CellState::unknown) &&
+              grid_t::FREE == static_cast<int>(CellState::free) &&
+              grid_t::OCCUPIED == static_cast<int>(CellState::occupied) &&
+              grid_t::DROP == static_cast<int>(CellState::drop) &&
+              grid_t::NO_GROUND == ObstacleGrid::kNoGround);
+
 void to_array(const Eigen::Vector3d& vector, double (&array)[3]) {
   std::copy_n(vector.data(), 3, array);
+}
+
+void to_array(const Eigen::Quaterniond& rotation, double (&array)[4]) {
+  array[0] = rotation.w();
+  array[1] = rotation.x();
+  array[2] = rotation.y();
+  array[3] = rotation.z();
 }
 
 Eigen::Vector3d to_vector(const double (&array)[3]) {
@@ -79,11 +92,7 @@ void make_room(std::size_t obstacles, obstacle_list_t& message) {
 void to_message(const ObstacleList& list, obstacle_list_t& message) {
   message.stamp_ns = list.stamp_ns;
   to_array(list.pose.translation, message.p);
-  const Eigen::Quaterniond& q = list.pose.rotation;
-  message.q[0] = q.w();
-  message.q[1] = q.x();
-  message.q[2] = q.y();
-  message.q[3] = q.z();
+  to_array(list.pose.rotation, message.q);
   message.size = static_cast<std::int32_t>(list.obstacles.size());
   grow(message.obstacles, list.obstacles.size());
   for (std::size_t i = 0; i < list.obstacles.size(); ++i) {
@@ -101,6 +110,30 @@ void from_message(const obstacle_list_t& message, ObstacleList& list) {
   for (std::size_t i = 0; i < size; ++i) {
     list.obstacles.push_back(from_message(message.obstacles[i]));
   }
+}
+
+void make_room(grid_t& message) {
+  constexpr std::size_t kMost = ObstacleGrid::kMostCells;
+  message.columns = message.rows = static_cast<std::int32_t>(kMost);
+  message.cells = static_cast<std::int32_t>(kMost * kMost);
+  message.state.resize(kMost * kMost);
+  message.ground.resize(kMost * kMost);
+}
+
+void to_message(const ObstacleGrid& grid, grid_t& message) {
+  message.stamp_ns = grid.stamp_ns;
+  to_array(grid.pose.translation, message.p);
+  to_array(grid.pose.rotation, message.q);
+  std::copy_n(grid.origin.data(), 2, message.origin);
+  message.cell_size = grid.cell_size;
+  message.columns = static_cast<std::int32_t>(grid.columns);
+  message.rows = static_cast<std::int32_t>(grid.rows);
+  message.cells = static_cast<std::int32_t>(grid.cells());
+  grow(message.state, grid.cells());
+  grow(message.ground, grid.cells());
+  std::ranges::transform(grid.state, message.state.begin(),
+                         [](CellState state) { return static_cast<std::uint8_t>(state); });
+  std::ranges::copy(grid.ground, message.ground.begin());
 }
 
 }  // namespace scree

@@ -1,5 +1,7 @@
 #include "scree/publish/publisher.hpp"
 
+#include <algorithm>
+
 #include "scree/publish/messages.hpp"
 #include "scree/publish/multicast.hpp"
 
@@ -16,12 +18,19 @@ Result<Publisher> Publisher::open(const std::string& lcm_url, std::size_t max_ob
 
 Publisher::Publisher(lcm_t* lcm, std::size_t max_obstacles) : lcm_(lcm) {
   make_room(max_obstacles, list_);
-  encoded_.resize(static_cast<std::size_t>(list_.getEncodedSize()));
+  make_room(grid_);
+  encoded_.resize(
+      static_cast<std::size_t>(std::max(list_.getEncodedSize(), grid_.getEncodedSize())));
 }
 
 bool Publisher::publish(const ObstacleList& list) {
   to_message(list, list_);
   return send(kObstaclesChannel, list_);
+}
+
+bool Publisher::publish(const ObstacleGrid& grid) {
+  to_message(grid, grid_);
+  return send(kGridChannel, grid_);
 }
 
 bool Publisher::publish(const health_t& health) {

@@ -12,19 +12,25 @@ namespace scree {
 // trips the undefined-behaviour sanitizer.
 
 Result<std::unique_ptr<Subscriber>> Subscriber::open(const std::string& lcm_url, OnList on_list,
-                                                     OnHealth on_health) {
+                                                     OnHealth on_health, OnGrid on_grid) {
   if (const auto routed = check_multicast(lcm_url); !routed) {
     return tl::make_unexpected(routed.error());
   }
   lcm_t* lcm = lcm_create(lcm_url.c_str());
   if (lcm == nullptr) return fail("LCM cannot open " + lcm_url);
-  return std::unique_ptr<Subscriber>(new Subscriber(lcm, std::move(on_list), std::move(on_health)));
+  return std::unique_ptr<Subscriber>(
+      new Subscriber(lcm, std::move(on_list), std::move(on_health), std::move(on_grid)));
 }
 
-Subscriber::Subscriber(lcm_t* lcm, OnList on_list, OnHealth on_health)
-    : lcm_(lcm), on_list_(std::move(on_list)), on_health_(std::move(on_health)) {
+Subscriber::Subscriber(lcm_t* lcm, OnList on_list, OnHealth on_health, OnGrid on_grid)
+    : lcm_(lcm),
+      on_list_(std::move(on_list)),
+      on_health_(std::move(on_health)),
+      on_grid_(std::move(on_grid)) {
   lcm_subscribe(lcm, kObstaclesChannel, take<obstacle_list_t, OnList, &Subscriber::on_list_>, this);
   lcm_subscribe(lcm, kHealthChannel, take<health_t, OnHealth, &Subscriber::on_health_>, this);
+  if (!on_grid_) return;
+  lcm_subscribe(lcm, kGridChannel, take<grid_t, OnGrid, &Subscriber::on_grid_>, this);
 }
 
 bool Subscriber::handle(int milliseconds) {

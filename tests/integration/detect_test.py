@@ -117,6 +117,58 @@ class DetectTest(ProgramTest):
             self.check_list(each)
         self.assertTrue(any(each["obstacles"] for each in lists))
 
+    def cells_of(self, grid):
+        """The states of a grid, a text of a sign a cell for each row."""
+        rows = []
+        for row in grid["states"]:
+            runs = re.findall(r"(\d*)([?.#v])", row)
+            self.assertEqual("".join(count + sign for count, sign in runs), row)
+            rows.append("".join(int(count or 1) * sign for count, sign in runs))
+        self.assertEqual([len(row) for row in rows], [grid["columns"]] * grid["rows"])
+        return rows
+
+    def test_a_drive_has_a_grid_for_each_list(self):
+        capture, file = self.path("capture"), self.path("grids.jsonl")
+        self.scree("simulate", capture, "--seconds", "5", "--seed", "7")
+        lists = self.detect(capture, "--grid", file)
+        with open(file) as lines:
+            grids = [json.loads(line) for line in lines]
+        self.assertEqual([each["stamp_ns"] for each in grids], [each["stamp_ns"] for each in lists])
+        for found, grid in zip(lists, grids):
+            self.assertEqual(grid["pose"], found["pose"])
+            size, origin, rows = grid["cell_size"], grid["origin"], self.cells_of(grid)
+            self.assertEqual((size, len(rows), len(rows[0])), (0.2, 120, 120))
+            for place, middle in zip(origin, grid["pose"]["p"]):
+                self.assertAlmostEqual(place / size, round(place / size), 6)
+                self.assertAlmostEqual(place + 60 * size, middle, delta=size / 2 + 1e-6)
+            signs = "".join(rows)
+            self.assertEqual(len(grid["ground"]), len(signs) - signs.count("?"))
+            covered = 0
+            for obstacle in found["obstacles"]:
+                for x, y in [obstacle["center"][:2], *obstacle["footprint"]]:
+                    column, row = ((place - low) / size for place, low in zip((x, y), origin))
+                    # A corner on an edge may count to either side.
+                    if min(column % 1, 1 - column % 1, row % 1, 1 - row % 1) < 1e-6:
+                        continue
+                    if 0 <= column < 120 and 0 <= row < 120:
+                        self.assertIn(rows[int(row)][int(column)], "#v")
+                        covered += 1
+            self.assertEqual(covered > 0, "#" in signs or "v" in signs)
+        signs = "".join(self.cells_of(grids[-1]))
+        self.assertGreater(signs.count("."), 1000)
+        self.assertGreater(signs.count("?"), 3000)
+        self.assertGreater(signs.count("#"), 10)
+
+    def test_what_has_no_grid_says_so(self):
+        out = ["--out", self.path("l.jsonl"), "--grid", self.path("g.jsonl")]
+        refused = self.scree("detect", self.simulated_cloud(), *out, code=1).stderr
+        self.assertIn("only the map has a grid", refused)
+        capture = self.path("capture")
+        self.scree("simulate", capture, "--seconds", "1")
+        config = self.write("scree.toml", "[lcm]\ngrid = false\n")
+        refused = self.scree("detect", capture, "--config", config, *out, code=1).stderr
+        self.assertIn("it needs lcm.grid", refused)
+
     def test_stages_are_written_and_counted(self):
         counts, names = self.stages()
         # Bodies have level points too, and some without a slope.

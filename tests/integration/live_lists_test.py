@@ -5,7 +5,7 @@ import math
 import os
 import sys
 
-from live_daemon import LiveDaemonTest
+from live_daemon import Lines, LiveDaemonTest
 from live_sensors import Player
 from programs import PATIENCE, main
 from reference_scoring import in_base
@@ -36,6 +36,7 @@ class LiveListsTest(LiveDaemonTest):
         offline = self.path("offline.jsonl")
         self.done(self.scree, "detect", capture, "--out", offline)
         self.start_daemon()
+        watched = Lines(self.start(self.scree, "watch", "--url", self.url, "--grid").stdout)
         self.assertTrue(self.mti.measures.wait(PATIENCE))
         player = Player(capture, self.port, self.position_port, self.mti)
         player.wait()
@@ -48,6 +49,10 @@ class LiveListsTest(LiveDaemonTest):
             alone = [json.loads(line) for line in file]
         live = [json.loads(line) for line in self.lists.lines]
         self.assertGreater(len(live), len(alone) - 5)
+        grids = [line for line in watched.lines if "grid of 120 x 120 cells of 0.2 m: " in line]
+        self.assertGreater(len(grids), len(live) - 5)  # none before IMU or encoder have spoken
+        self.assertLessEqual(len(grids), len(live))
+        self.assertNotIn(" 0 free", grids[-1])
         both = missed = added = 0
         for here in live:
             stamp = here["stamp_ns"] - player.later_ns

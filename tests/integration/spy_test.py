@@ -74,7 +74,7 @@ class SpyTest(ProgramTest):
                 break
         else:
             self.skipTest(spy.stderr.read().strip())
-        self.assertIn("Found 8 LCM types\n", said)
+        self.assertIn("Found 9 LCM types\n", said)
         self.assertEqual(said[-1], "Found 1 plugins\n")
 
     def open_view(self):

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "scree/core/obstacle_grid.hpp"
 #include "scree/core/stage_times.hpp"
 
 namespace scree {
@@ -29,6 +30,7 @@ struct DetectionReport {
   DropCounts drops;
   MotionReport motion;
   StageTimes stage_times{};
+  const ObstacleGrid* grid = nullptr;  ///< valid as long as the list; null without one
 };
 
 }  // namespace scree

@@ -7,9 +7,11 @@
 
 #include "scree/config/settings.hpp"
 #include "scree/core/obstacle.hpp"
+#include "scree/core/obstacle_grid.hpp"
 #include "scree/core/stage_times.hpp"
 #include "scree/core/sweep.hpp"
 #include "scree/detect/detector.hpp"
+#include "scree/detect/grid_maker.hpp"
 #include "scree/detect/tracker.hpp"
 #include "scree/sync/sync_buffer.hpp"
 #include "scree/terrain/mapper.hpp"
@@ -37,6 +39,9 @@ public:
   SyncBuffer& sensors() { return *sensors_; }
   /// @return the list of this sweep; valid until the next call
   const ObstacleList& process(const Sweep& sweep);
+  /// What is free, occupied or unknown around the robot, with the last list; null when lcm.grid is
+  /// off, or the list is not from the map's surface. Valid until the next call of process().
+  const ObstacleGrid* grid() const { return grid_; }
   /// From the next sweep on.
   void set_tracking(const TrackingSettings& settings) { tracker_.set(settings); }
 
@@ -71,6 +76,8 @@ private:
   DeskewedSweep sweep_;  // of a robot that stands
   FixedVector<Obstacle> found_;
   ObstacleList list_;
+  std::optional<GridMaker> grid_maker_;
+  const ObstacleGrid* grid_ = nullptr;
   StageTimer timer_;
   bool uses_map_ = false, has_looked_ = false;
 };

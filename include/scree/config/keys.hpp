@@ -140,6 +140,12 @@ void for_every_key(AnySettings& settings, Visit&& visit) {
   table = "lcm";
   key("url", settings.lcm.url, "", 0, 0,
       "LCM provider; ttl=0 stays on this computer, ttl=1 reaches the local network");
+  key("grid", settings.lcm.grid, "", 0, 0,
+      "publish after each list from the map what is free, occupied, a drop or unknown around the "
+      "robot, on SCREE_GRID; only with detect.map.method = \"surface\"");
+  key("grid_cell", settings.lcm.grid_cell, "m", 0.1, 1,
+      "edge of its cells: smaller shows narrower gaps; it has 128 x 128 at most, so smaller ones "
+      "than map.search_reach / 64 reach less far");
 
   table = "memory";
   auto& memory = settings.memory;

@@ -260,6 +260,8 @@ private:
 
 struct LcmSettings {
   std::string url = "udpm://239.255.76.67:7667?ttl=0";
+  bool grid = true;
+  double grid_cell = 0.2;
 };
 
 struct Settings {

@@ -21,12 +21,13 @@ enum class Stage : std::uint8_t {
   features,
   network,
   tracking,
+  grid,  ///< of what is free, occupied or unknown
 };
 
 /// In health, in the order of Stage.
-inline constexpr std::array<std::string_view, 12> kStageNames = {
-    "motion",      "registration", "map",      "voxel_grid", "surface", "gradient",
-    "suppression", "supervoxels",  "clusters", "features",   "network", "tracking"};
+inline constexpr std::array<std::string_view, 13> kStageNames = {
+    "motion",      "registration", "map",      "voxel_grid", "surface",  "gradient", "suppression",
+    "supervoxels", "clusters",     "features", "network",    "tracking", "grid"};
 
 /// How long each stage of one list took, nanoseconds; kDidNotRun of one that did not run.
 using StageTimes = std::array<std::int64_t, kStageNames.size()>;

@@ -46,8 +46,9 @@ public:
     return visit_method([](const auto& method) { return method.result(); });
   }
 
-  /// Null where the method is another one.
+  // Null where the method is another one.
   const EdgeMethod* edge_method() const { return std::get_if<EdgeMethod>(&method_); }
+  const SurfaceMethod* surface_method() const { return std::get_if<SurfaceMethod>(&method_); }
 
 private:
   using AnyMethod = std::variant<EdgeMethod, SurfaceMethod>;

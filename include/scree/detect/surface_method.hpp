@@ -38,6 +38,7 @@ public:
                        StageTimer& timer);
 
   // What each stage of the last call gave.
+  const GroundSurface& ground() const { return surface_; }
   const SlopedCloud& sloped() const { return sloped_; }
   const CandidatePoints& candidates() const { return candidates_; }
   ClusteredPoints result() const { return {kept_, clusters_}; }

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstddef>
+#include <scree/grid_t.hpp>
 #include <scree/obstacle_list_t.hpp>
 
 #include "scree/core/obstacle.hpp"
+#include "scree/core/obstacle_grid.hpp"
 
 namespace scree {
 
@@ -16,5 +18,11 @@ void to_message(const ObstacleList& list, obstacle_list_t& message);
 
 /// The list of an LCM message. Allocates only when the list has to grow.
 void from_message(const obstacle_list_t& message, ObstacleList& list);
+
+/// Takes memory for the largest grid. The message is then one.
+void make_room(grid_t& message);
+
+/// The LCM message of a grid. Allocates only when the message's vectors have to grow, as for lists.
+void to_message(const ObstacleGrid& grid, grid_t& message);
 
 }  // namespace scree

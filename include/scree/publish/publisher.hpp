@@ -3,21 +3,24 @@
 #include <lcm/lcm.h>
 
 #include <memory>
+#include <scree/grid_t.hpp>
 #include <scree/health_t.hpp>
 #include <scree/obstacle_list_t.hpp>
 #include <string>
 #include <vector>
 
 #include "scree/core/obstacle.hpp"
+#include "scree/core/obstacle_grid.hpp"
 #include "scree/core/result.hpp"
 
 namespace scree {
 
 inline constexpr const char* kObstaclesChannel = "SCREE_OBSTACLES";
+inline constexpr const char* kGridChannel = "SCREE_GRID";
 inline constexpr const char* kHealthChannel = "SCREE_HEALTH";
 
-/// Sends obstacle lists and health on LCM. One thread may use it. Its buffers are sized when it is
-/// made: sending a list of up to max_obstacles allocates nothing.
+/// Sends obstacle lists, grids and health on LCM. One thread may use it. Its buffers are sized when
+/// it is made: sending a grid or a list of up to max_obstacles allocates nothing.
 class Publisher {
 public:
   /// Opens an LCM provider; the error says what to do where multicast has no route.
@@ -25,6 +28,7 @@ public:
 
   /// False when LCM did not take the message.
   bool publish(const ObstacleList& list);
+  bool publish(const ObstacleGrid& grid);
   bool publish(const health_t& health);
 
 private:
@@ -38,6 +42,7 @@ private:
 
   std::unique_ptr<lcm_t, Destroy> lcm_;
   obstacle_list_t list_{};
+  grid_t grid_{};
   std::vector<std::uint8_t> encoded_;
 };
 

@@ -35,6 +35,7 @@ protected:
     processed_ns_ = steady_ns();
     list_.stamp_ns = sweep.end_ns;
     report.drops.points = 7;
+    if (has_grid_) report.grid = &found_grid_;
     ++processed_;
     return has_looked_ ? &list_ : nullptr;
   }
@@ -71,6 +72,8 @@ protected:
   SweepPool sweeps_{kSweeps, [] { return TimedSweep(); }};
   ObstacleListPool lists_{kLists, [] { return TimedObstacleList(1); }};
   ObstacleList list_{1};
+  ObstacleGrid found_grid_;
+  std::atomic<bool> has_grid_ = false;
   std::atomic<bool> has_looked_ = true;
   std::atomic<int> processed_ = 0;
   std::atomic<std::int64_t> processed_ns_ = 0;
@@ -89,6 +92,24 @@ TEST_F(DetectorWorkerTest, PassesOnTheListWithItsTimesAndReport) {
   EXPECT_GE(timed->detector_ns, 0);
   EXPECT_EQ(timed->report.drops.points, 7U);
   EXPECT_EQ(worker_->not_covered(), 0U);
+}
+
+TEST_F(DetectorWorkerTest, PassesOnTheGridWithItsListAndNoOldOne) {
+  found_grid_.columns = found_grid_.rows = 2;
+  found_grid_.state.assign(4, CellState::free);
+  found_grid_.ground.assign(4, 17);
+  has_grid_ = true;
+  start();
+  for (std::size_t i = 0; i < kLists + 1; ++i) {
+    push_sweep(kEndNs);
+    TimedObstacleList* timed = next_list();
+    ASSERT_NE(timed, nullptr);
+    EXPECT_EQ(timed->grid.cells(), i < kLists ? 4U : 0U);
+    EXPECT_EQ(timed->grid.state.size(), timed->grid.cells());
+    EXPECT_EQ(timed->report.grid, nullptr);
+    lists_.release(timed);
+    if (i + 1 == kLists) has_grid_ = false;
+  }
 }
 
 TEST_F(DetectorWorkerTest, ASweepThatWasNotLookedAtGivesNoList) {

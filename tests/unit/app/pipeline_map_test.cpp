@@ -140,6 +140,31 @@ TEST_F(PipelineMap, HasNotLookedWithItsFirstSweepNorWithAPartOfATurn) {
   EXPECT_FALSE(pipeline_.has_looked());
 }
 
+TEST_F(PipelineMap, TheGridOfAListIsAroundTheRobotAndSaysWhatWasSeen) {
+  go(2, false);
+  EXPECT_EQ(pipeline_.grid(), nullptr) << "a sweep by itself";
+  const ObstacleList& list = go(20);
+  const ObstacleGrid* grid = pipeline_.grid();
+  ASSERT_NE(grid, nullptr);
+  EXPECT_EQ(grid->stamp_ns, list.stamp_ns);
+  EXPECT_EQ(grid->pose.translation, list.pose.translation);
+  EXPECT_EQ(grid->columns, 120U) << "map.search_reach to each side";
+  const Eigen::Vector2d middle = grid->middle(59, 59) + Eigen::Vector2d(0.1, 0.1);
+  EXPECT_LT((middle - list.pose.translation.head<2>()).cwiseAbs().maxCoeff(), 0.11);
+  const auto free = std::ranges::count(grid->state, CellState::free);
+  EXPECT_GT(free, 500);
+  EXPECT_LT(free, 120 * 120 / 2) << "between the rings";
+  EXPECT_EQ(grid->state[0], CellState::unknown) << "a corner is out of reach";
+  for (std::size_t cell = 0; cell < grid->cells(); ++cell) {
+    if (grid->state[cell] != CellState::free) continue;
+    const Eigen::Vector2d middle_of_cell = grid->middle(cell % 120, cell / 120);
+    const double z = grid->pose.translation.z() + 0.01 * grid->ground[cell];
+    const Eigen::Vector3d in_odom(middle_of_cell.x(), middle_of_cell.y(), z);
+    const Eigen::Vector3d place = drive_.base(kSweep * sweeps_) * (grid->pose.inverse() * in_odom);
+    EXPECT_NEAR(place.z(), ground_.height(place.x(), place.y()), 0.1);
+  }
+}
+
 TEST_F(PipelineMap, TimesTheStagesThatRun) {
   const auto time_of = [&](Stage stage) {
     return pipeline_.stage_times()[static_cast<std::size_t>(stage)];
@@ -149,8 +174,9 @@ TEST_F(PipelineMap, TimesTheStagesThatRun) {
   static std::int64_t reading = 0;
   pipeline_.time_stages([] { return ++reading; });
   go(1);
-  for (const Stage stage : {Stage::motion, Stage::registration, Stage::map, Stage::voxel_grid,
-                            Stage::gradient, Stage::clusters, Stage::network, Stage::tracking}) {
+  for (const Stage stage :
+       {Stage::motion, Stage::registration, Stage::map, Stage::voxel_grid, Stage::gradient,
+        Stage::clusters, Stage::network, Stage::tracking, Stage::grid}) {
     EXPECT_EQ(time_of(stage), 1) << kStageNames[static_cast<std::size_t>(stage)];
   }
 }
@@ -180,6 +206,21 @@ TEST_F(PipelineMap, GoesOnWhenTheClockIsSet) {
     EXPECT_NEAR(list.pose.translation.norm(), truth.norm(), 0.3) << hours;
     EXPECT_GT(pipeline_.ground().size(), 1000U) << hours;
   }
+}
+
+class PipelineMapWithoutGrid : public PipelineMap {
+protected:
+  PipelineMapWithoutGrid() : PipelineMap(without()) {}
+  static Settings without() {
+    Settings settings = small_settings();
+    settings.lcm.grid = false;
+    return settings;
+  }
+};
+
+TEST_F(PipelineMapWithoutGrid, MakesNone) {
+  go(5);
+  EXPECT_EQ(pipeline_.grid(), nullptr);
 }
 
 class PipelineMapTooSmall : public PipelineMap {

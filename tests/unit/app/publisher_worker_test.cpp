@@ -25,7 +25,11 @@ protected:
           list_ = message;
           ++lists_received_;
         },
-        [this](const health_t& message) { health_ = message; });
+        [this](const health_t& message) { health_ = message; },
+        [this](const grid_t& message) {
+          lists_before_grid_ = lists_received_;
+          grid_ = message;
+        });
     auto publisher = Publisher::open(url, 1);
     EXPECT_TRUE(subscriber && publisher);
     subscriber_ = std::move(*subscriber);
@@ -57,9 +61,12 @@ protected:
     return status;
   }
   /// Pushes a list of a sweep that arrived some time ago.
-  void push_list(std::int64_t age_ns) {
+  void push_list(std::int64_t age_ns, std::size_t grid_columns = 0) {
     TimedObstacleList* timed = lists_.acquire();
     ASSERT_NE(timed, nullptr);
+    timed->grid.columns = timed->grid.rows = grid_columns;
+    timed->grid.state.assign(timed->grid.cells(), CellState::free);
+    timed->grid.ground.assign(timed->grid.cells(), 0);
     timed->arrival_ns = timed->list.stamp_ns = steady_ns() - age_ns;
     lists_.push(timed);
   }
@@ -77,6 +84,8 @@ protected:
   std::atomic<int> heartbeats_ = 0;
   int lists_received_ = 0;
   obstacle_list_t list_{};
+  grid_t grid_{};
+  int lists_before_grid_ = 0;
   health_t health_{};
   std::unique_ptr<Subscriber> subscriber_;
   std::optional<PublisherWorker> worker_;
@@ -89,6 +98,15 @@ TEST_F(PublisherWorkerTest, AListGoesOutInWallClockTimeAndBeats) {
   EXPECT_NEAR(static_cast<double>(wall_ns() - list_.stamp_ns), 0, 60e9);
   EXPECT_TRUE(until([&] { return heartbeats_ == 1; }));
   EXPECT_TRUE(until([&] { return health_.state == health_t::OK && health_.lists_published == 1; }));
+}
+
+TEST_F(PublisherWorkerTest, AGridGoesOutAfterItsListAndWithItsStamp) {
+  push_list(0);
+  push_list(0, 5);
+  ASSERT_TRUE(until([&] { return grid_.cells == 25; }));
+  EXPECT_EQ(lists_before_grid_, 2) << "the first list has none";
+  EXPECT_EQ(grid_.stamp_ns, list_.stamp_ns);
+  EXPECT_EQ(health_.lists_failed, 0);
 }
 
 TEST_F(PublisherWorkerTest, AnOldListGoesOutButIsNoSight) {

@@ -42,6 +42,32 @@ TEST(Jsonl, WritesTheTextOfTheInterface) {
             "\"points\": 118}]}\n");
 }
 
+TEST(Jsonl, WritesAGridAsRunsOfStates) {
+  ObstacleGrid grid;
+  grid.stamp_ns = 1598601600123456789;
+  grid.pose.translation = {1.5, -0.25, 0};
+  grid.origin = {-0.4, 0.2};
+  grid.cell_size = 0.2;
+  grid.columns = 4;
+  grid.rows = 3;
+  const CellState unknown = CellState::unknown, free = CellState::free;
+  for (const CellState state : {unknown, unknown, unknown, unknown,        //
+                                unknown, free, free, CellState::occupied,  //
+                                CellState::drop, CellState::drop, free, unknown}) {
+    grid.state.push_back(state);
+    const auto cell = static_cast<std::int16_t>(grid.ground.size());
+    grid.ground.push_back(state == unknown ? ObstacleGrid::kNoGround
+                                           : static_cast<std::int16_t>(cell - 7));
+  }
+  std::string text;
+  append_json_line(grid, text);
+  EXPECT_EQ(text,
+            "{\"stamp_ns\": 1598601600123456789, \"pose\": {\"p\": [1.5, -0.25, 0], "
+            "\"q\": [1, 0, 0, 0]}, \"origin\": [-0.4, 0.2], \"cell_size\": 0.2, \"columns\": 4, "
+            "\"rows\": 3, \"states\": [\"4?\", \"?2.#\", \"2v.?\"], "
+            "\"ground\": [-2, -1, 0, 1, 2, 3]}\n");
+}
+
 TEST(Jsonl, WritesEvidenceAndFootprintWhereThereAreAny) {
   ObstacleList list = example();
   list.obstacles[1].evidence = Evidence::wall;

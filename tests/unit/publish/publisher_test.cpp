@@ -64,6 +64,38 @@ TEST(Messages, WithRoomMadeListsOfAnyLengthAllocateNothing) {
   EXPECT_LE(message.getEncodedSize(), most);
 }
 
+ObstacleGrid grid_of(std::size_t columns, std::size_t rows) {
+  ObstacleGrid grid;
+  grid.stamp_ns = 1598601600123456789;
+  grid.pose.translation = {1, 2, 3};
+  grid.pose.rotation = from_roll_pitch_yaw(0.1, 0.2, 0.3);
+  grid.origin = {-4.2, 7.6};
+  grid.cell_size = 0.2;
+  grid.columns = columns;
+  grid.rows = rows;
+  for (std::size_t cell = 0; cell < grid.cells(); ++cell) {
+    const auto state = static_cast<CellState>(cell % kCellStates);
+    grid.state.push_back(state);
+    grid.ground.push_back(state == CellState::unknown
+                              ? ObstacleGrid::kNoGround
+                              : static_cast<std::int16_t>(cell % 700 - 350));
+  }
+  return grid;
+}
+
+TEST(Messages, WithRoomMadeGridsOfAnySizeAllocateNothing) {
+  const ObstacleGrid largest = grid_of(ObstacleGrid::kMostCells, ObstacleGrid::kMostCells);
+  const ObstacleGrid small = grid_of(4, 2);
+  grid_t message{};
+  make_room(message);
+  const int most = message.getEncodedSize();
+  const std::size_t before = test::allocations();
+  for (const ObstacleGrid* grid : {&largest, &small, &largest, &small}) to_message(*grid, message);
+  EXPECT_EQ(test::allocations(), before);
+  EXPECT_EQ(message.cells, 8);
+  EXPECT_LE(most, 65'000) << "it fits in one datagram";
+}
+
 TEST(Messages, AnUnknownEvidenceIsNone) {
   obstacle_list_t message{};
   to_message(list_of(2), message);
@@ -75,18 +107,20 @@ TEST(Messages, AnUnknownEvidenceIsNone) {
   EXPECT_EQ(list.obstacles[1].evidence, Evidence::none);
 }
 
-/// Receives the next message of either type, or fails after ten seconds.
+/// Receives the next message of any type, or fails after ten seconds.
 class Receiver {
 public:
   explicit Receiver(const std::string& url) {
     auto opened = Subscriber::open(
         url, [this](const obstacle_list_t& message) { list_ = message; },
-        [this](const health_t& message) { health_ = message; });
+        [this](const health_t& message) { health_ = message; },
+        [this](const grid_t& message) { grid_ = message; });
     EXPECT_TRUE(opened) << opened.error().message;
     subscriber_ = std::move(*opened);
   }
   obstacle_list_t next_list() { return next(list_); }
   health_t next_health() { return next(health_); }
+  grid_t next_grid() { return next(grid_); }
 
 private:
   template <class Message>
@@ -100,6 +134,7 @@ private:
   std::unique_ptr<Subscriber> subscriber_;
   std::optional<obstacle_list_t> list_;
   std::optional<health_t> health_;
+  std::optional<grid_t> grid_;
 };
 
 TEST(Publisher, ListsComeThroughUnchanged) {
@@ -114,6 +149,32 @@ TEST(Publisher, ListsComeThroughUnchanged) {
     ObstacleList received;
     from_message(receiver.next_list(), received);
     EXPECT_EQ(json(received), json(sent));
+  }
+}
+
+TEST(Publisher, GridsComeThroughUnchanged) {
+  const std::string url = free_lcm_url();
+  Receiver receiver(url);
+  auto publisher = Publisher::open(url, 1);
+  ASSERT_TRUE(publisher) << publisher.error().message;
+  for (const std::size_t side : {ObstacleGrid::kMostCells, std::size_t{3}}) {
+    const ObstacleGrid sent = grid_of(side, side - side % 2);
+    ASSERT_TRUE(publisher->publish(sent));
+    const grid_t received = receiver.next_grid();
+    EXPECT_EQ(received.stamp_ns, sent.stamp_ns);
+    EXPECT_EQ(received.p[2], 3);
+    EXPECT_EQ(received.q[0], sent.pose.rotation.w());
+    EXPECT_EQ(received.q[3], sent.pose.rotation.z());
+    EXPECT_EQ(received.origin[0], -4.2);
+    EXPECT_EQ(received.origin[1], 7.6);
+    EXPECT_EQ(received.cell_size, 0.2);
+    EXPECT_EQ(received.columns, static_cast<int>(sent.columns));
+    EXPECT_EQ(received.rows, static_cast<int>(sent.rows));
+    ASSERT_EQ(received.state.size(), sent.cells());
+    for (std::size_t cell = 0; cell < sent.cells(); ++cell) {
+      EXPECT_EQ(received.state[cell], cell % kCellStates);
+      EXPECT_EQ(received.ground[cell], sent.ground[cell]);
+    }
   }
 }
 

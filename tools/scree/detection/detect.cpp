@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <fstream>
 #include <memory>
+#include <optional>
 
 #include "commands.hpp"
 #include "detection/pipeline_capture.hpp"
@@ -19,22 +20,23 @@ namespace {
 namespace fs = std::filesystem;
 
 struct DetectOptions {
-  fs::path input, config, out, stages;
+  fs::path input, config, out, grid, stages;
   std::vector<float> viewpoint;  // x, y, z in metres; empty: the file's
 };
 
-/// The lists as lines of JSON, in a file or on standard output.
-class ListWriter {
+/// Lists or grids as lines of JSON, in a file or on standard output.
+class LineWriter {
 public:
-  explicit ListWriter(const fs::path& file) : to_stdout_(file.empty() || file == "-") {
+  explicit LineWriter(const fs::path& file) : to_stdout_(file.empty() || file == "-") {
     if (to_stdout_) return;
     file_.open(file, std::ios::binary);
     if (!file_) throw Failure("cannot write " + file.string());
   }
 
-  void write(const ObstacleList& list) {
+  template <class What>
+  void write(const What& what) {
     line_.clear();
-    append_json_line(list, line_);
+    append_json_line(what, line_);
     if (to_stdout_) {
       std::fwrite(line_.data(), 1, line_.size(), stdout);
     } else {
@@ -43,7 +45,8 @@ public:
   }
 
   void finish() {
-    if (!to_stdout_ && !file_.flush()) throw Failure("cannot write the list: the disk may be full");
+    if (!to_stdout_ && !file_.flush())
+      throw Failure("cannot write what was found: the disk may be full");
   }
 
   /// Where counts go, so that they do not mix with lists.
@@ -69,6 +72,7 @@ Eigen::Vector3f viewpoint_of(const DetectOptions& options, const PcdCloud& cloud
 }
 
 void detect_in_cloud(const DetectOptions& options) {
+  if (!options.grid.empty()) throw Failure("--grid is for captures: only the map has a grid");
   Settings settings = capture_settings(options.input, options.config);
   const auto cloud = read_pcd(options.input);
   if (!cloud) throw Failure(cloud.error().message);
@@ -79,7 +83,7 @@ void detect_in_cloud(const DetectOptions& options) {
                                 settings_file(options.input, options.config).value_or(fs::path()));
   if (!detector) throw Failure(detector.error().message);
 
-  ListWriter writer(options.out);
+  LineWriter writer(options.out);
   ObstacleList list(static_cast<std::size_t>(memory.obstacles));
   const Eigen::Vector3f viewpoint = viewpoint_of(options, *cloud);
   const bool is_known = !options.viewpoint.empty() || could_be_seen_from(viewpoint, *cloud);
@@ -101,10 +105,17 @@ void detect_in_cloud(const DetectOptions& options) {
 void detect_in_capture(const DetectOptions& options) {
   PipelineCapture capture(options.input, options.config);
   Pipeline& pipeline = capture.pipeline();
-  ListWriter writer(options.out);
+  LineWriter writer(options.out);
+  std::optional<LineWriter> grids;
+  if (!options.grid.empty()) grids.emplace(options.grid);
   std::size_t sweeps = 0;
+  bool has_grid = false;
   capture.play([&](const Sweep& sweep) {
     writer.write(pipeline.process(sweep));
+    if (grids && pipeline.grid() != nullptr) {
+      grids->write(*pipeline.grid());
+      has_grid = true;
+    }
     const std::string name = fmt::format("sweep_{:06}", sweeps++);
     const StageCounts counts = pipeline.counts();
     warn_of_losses(counts, name);
@@ -113,6 +124,10 @@ void detect_in_capture(const DetectOptions& options) {
     fmt::print(writer.other_output(), "{}: {}\n", name, chain(counts));
   });
   writer.finish();
+  if (!grids) return;
+  grids->finish();
+  if (has_grid) return;
+  throw Failure("there was no grid: it needs lcm.grid, method = \"surface\" and IMU or encoder");
 }
 
 }  // namespace
@@ -128,6 +143,9 @@ void add_detect(CLI::App& app) {
       ->check(CLI::ExistingPath);
   command->add_option("--config", options->config, "configuration; default: the capture's own");
   command->add_option("--out", options->out, "JSON lines file; default: standard output");
+  command->add_option("--grid", options->grid,
+                      "JSON lines file: what is free, occupied, a drop or unknown, for each list "
+                      "from the map");
   command->add_option("--stages", options->stages,
                       "folder for the cloud of each stage as PCD; prints their counts");
   command

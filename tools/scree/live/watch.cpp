@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "commands.hpp"
 #include "common/lcm_options.hpp"
@@ -18,7 +19,7 @@ using Clock = std::chrono::steady_clock;
 
 struct WatchOptions {
   LcmOptions lcm;
-  bool json = false;
+  bool json = false, grid = false;
   int count = 0;
   double seconds = 0, every = 0;
 };
@@ -40,6 +41,11 @@ public:
     } else {
       append_text(list_, text_);
     }
+    print();
+  }
+  void take_grid(const grid_t& message) {
+    text_.clear();
+    append_text(message, text_);
     print();
   }
   void take_health(const health_t& message) {
@@ -93,9 +99,11 @@ std::string nothing_came(const WatchOptions& options, const Watcher& watcher,
 void watch(const WatchOptions& options) {
   const std::string url = options.lcm.url_of();
   Watcher watcher(options);
+  Subscriber::OnGrid on_grid;
+  if (options.grid) on_grid = [&](const grid_t& grid) { watcher.take_grid(grid); };
   const auto subscriber = Subscriber::open(
       url, [&](const obstacle_list_t& list) { watcher.take_list(list); },
-      [&](const health_t& health) { watcher.take_health(health); });
+      [&](const health_t& health) { watcher.take_health(health); }, std::move(on_grid));
   if (!subscriber) throw Failure(subscriber.error().message);
 
   const bool ends = options.seconds > 0;
@@ -121,7 +129,12 @@ void add_watch(CLI::App& app) {
   CLI::App* command = app.add_subcommand("watch", "Print obstacle lists and health as they come");
   auto options = std::make_shared<WatchOptions>();
   options->lcm.add_to(*command);
-  command->add_flag("--json", options->json, "the lists alone, one JSON object a line");
+  CLI::Option* const json =
+      command->add_flag("--json", options->json, "the lists alone, one JSON object a line");
+  command
+      ->add_flag("--grid", options->grid,
+                 "a line for each grid, too: how many cells are free, occupied, a drop, unknown")
+      ->excludes(json);
   command->add_option("--count", options->count, "end after this many lists")
       ->check(CLI::PositiveNumber);
   command

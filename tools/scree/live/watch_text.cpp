@@ -79,6 +79,15 @@ void append_text(const ObstacleList& list, std::string& text) {
   }
 }
 
+void append_text(const grid_t& grid, std::string& text) {
+  const auto cells = [&](int state) { return std::ranges::count(grid.state, state); };
+  fmt::format_to(std::back_inserter(text),
+                 "{}  grid of {} x {} cells of {:g} m: {} free, {} occupied, {} drop, {} unknown\n",
+                 time_of_day(grid.stamp_ns), grid.columns, grid.rows, grid.cell_size,
+                 cells(grid_t::FREE), cells(grid_t::OCCUPIED), cells(grid_t::DROP),
+                 cells(grid_t::UNKNOWN));
+}
+
 void append_text(const health_t& health, std::string& text) {
   const std::string state =
       health.state == health_t::OK ? std::string("ok") : "BLIND (" + health.reason + ")";
