@@ -15,8 +15,6 @@ DetectSettings DetectSettings::for_paper() {
 
 DetectSettings DetectSettings::for_cloud() {
   DetectSettings detect;
-  detect.surface.clustering = SurfaceClustering::regions;
-  detect.surface.saddle = 0.5;
   detect.network = "network_cloud.txt";
   return detect;
 }

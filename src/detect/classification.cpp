@@ -67,6 +67,9 @@ Prediction classify(const Cluster& cluster, const Network& network) {
   if (hangs(cluster) || is_tall(cluster)) {
     prediction.positive = std::max(prediction.positive, kInTheWay);
     prediction.negative = std::min(prediction.negative, 1 - kInTheWay);
+  } else if (cluster.is_crater) {
+    prediction.negative = std::max(prediction.negative, kInTheWay);
+    prediction.positive = std::min(prediction.positive, 1 - kInTheWay);
   }
   return prediction;
 }

@@ -17,18 +17,23 @@ Depressions::Depressions(std::size_t max_cells)
     : level_(max_cells),
       shore_(max_cells),
       is_done_(max_cells),
+      is_taken_(max_cells),
       cells_(max_cells),
       slopes_(max_cells) {}
 
 bool Depressions::remove(const HeightRaster& raster, FixedVector<std::uint8_t>& ground) {
   flood(raster);
   is_done_.assign(raster.columns * raster.rows, 0);
+  is_taken_.assign(raster.columns * raster.rows, 0);
   bool any = false;
   for (std::size_t cell = 0; cell < is_done_.size(); ++cell) {
     if (is_done_[cell] != 0 || level_[cell] - raster.heights[cell] <= kShallow) continue;
     collect(cell, raster);
     if (!is_crater(raster, ground)) continue;
-    for (const std::uint32_t inside : cells_) ground[inside] = 0;
+    for (const std::uint32_t inside : cells_) {
+      ground[inside] = 0;
+      is_taken_[inside] = 1;
+    }
     any = true;
   }
   return any;
@@ -86,7 +91,7 @@ void Depressions::collect(std::size_t start, const HeightRaster& raster) {
 
 bool Depressions::is_crater(const HeightRaster& raster, const FixedVector<std::uint8_t>& ground) {
   constexpr float kDepth = 0.25F;      // metres
-  constexpr float kSlope = 0.3F;       // metres per metre
+  constexpr float kSlope = 0.32F;      // metres per metre
   constexpr double kGentle = 0.9;      // share of the area that may slope less
   constexpr float kLeastKnown = 0.3F;  // share of the area
   float depth = 0, known = 0;

@@ -164,9 +164,9 @@ GroundEdges::Beyond GroundEdges::look(std::size_t cell, int along_x, int along_y
     const float level = plane.height + rise * static_cast<float>(i);
     if (surface_->points_in(at) == 0) {
       if (beams_->lost_beams(at) < kFewestBeams) continue;
+      if (unseen.cells == 0) unseen.cells = i;
       const float depth = level - beams_->lowest_beam(at);
       if (depth < kLeastStep || plane.cells < kDense) continue;
-      if (unseen.step == 0) unseen.cells = i;
       unseen.step = std::min(unseen.step, -depth);
       continue;
     }

@@ -54,6 +54,7 @@ void GroundSurface::build_below(std::span<const std::uint8_t> loose,
 }
 
 void GroundSurface::find_ground(const GroundSurfaceSettings& settings) {
+  depressions_.clear();
   find_smooth_cells(settings.max_slope);
   const bool has_trend = settings.trend_reach > 0;
   if (!has_trend) add_planar_cells(settings.max_slope);

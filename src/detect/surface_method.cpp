@@ -10,6 +10,12 @@
 
 namespace scree {
 
+namespace {
+
+constexpr float kMostly = 0.7F;  // share of a cluster's points
+
+}  // namespace
+
 GroundSurfaceSettings ground_surface_of(const SurfaceSettings& settings) {
   return {.cell_size = static_cast<float>(settings.ground_cell),
           .cell_points = static_cast<float>(settings.ground_points),
@@ -155,23 +161,39 @@ void SurfaceMethod::measure_clusters(const PointCloud& points) {
     cluster.is_terrace = is_terrace(cluster);
     const bool is_below = cluster.features[max_height] < 0;
     if (is_below && cluster.features[through_share] < kMostBelowGround) {
-      cluster.evidence = evidence_.of(members, kept_, surface_);
+      // The ground all around a crater is known, or it would not be one.
+      cluster.is_crater = is_crater(cluster);
+      cluster.evidence =
+          cluster.is_crater ? Evidence::inside : evidence_.of(members, kept_, surface_);
     }
   }
 }
 
+/// Share of a cluster's points whose cells fulfil a condition.
+template <class Condition>
+float SurfaceMethod::share_of(const Cluster& cluster, const Condition& condition) const {
+  const auto members = clusters_.members(cluster);
+  const auto fulfilled = std::ranges::count_if(members, [&](std::uint32_t i) {
+    return condition(surface_.cell_at(kept_.points.x[i], kept_.points.y[i]));
+  });
+  return static_cast<float>(fulfilled) / static_cast<float>(members.size());
+}
+
 /// Whether a cluster is ground on a higher level, whose edge alone is in the way.
 bool SurfaceMethod::is_terrace(const Cluster& cluster) const {
-  constexpr float kArea = 20;     // square metres: the roof of a car has a third of it
-  constexpr float kHeight = 1;    // metres: lower than the roof of anything that drives
-  constexpr float kShare = 0.7F;  // of its points
-  if (cluster.features[max_height] > kHeight) return false;
-  const auto members = clusters_.members(cluster);
-  const auto level = std::ranges::count_if(members, [&](std::uint32_t i) {
-    const std::size_t cell = surface_.cell_at(kept_.points.x[i], kept_.points.y[i]);
-    return surface_.patch_area(cell) >= kArea;
-  });
-  return static_cast<float>(level) >= kShare * static_cast<float>(members.size());
+  constexpr float kArea = 20;   // square metres: the roof of a car has a third of it
+  constexpr float kHeight = 1;  // metres: lower than the roof of anything that drives
+  const Features& features = cluster.features;
+  if (features[min_height] < 0 || features[max_height] > kHeight) return false;
+  return share_of(cluster, [&](std::size_t cell) { return surface_.patch_area(cell) >= kArea; }) >=
+         kMostly;
+}
+
+/// Whether a cluster is the whole of a crater, or its deepest part.
+bool SurfaceMethod::is_crater(const Cluster& cluster) const {
+  constexpr float kDeep = -0.2F;  // metres
+  return cluster.features[min_height] <= kDeep &&
+         share_of(cluster, [&](std::size_t cell) { return surface_.is_crater(cell); }) >= kMostly;
 }
 
 }  // namespace scree

@@ -4,8 +4,14 @@ What is surely true of each recording stands beside its test.
 """
 
 import json
+import math
 import os
 import sys
+
+try:
+    import numpy
+except ImportError:
+    numpy = None
 
 from programs import ProgramTest, main
 
@@ -58,6 +64,47 @@ class RealGroundTest(ProgramTest):
             holes = self.of_kind("negative", self.cloud("field", "long_ditch_cloud", name))
             self.assertEqual(len(holes), 1, name)
             self.assertAlmostEqual(holes[0]["height"], -0.7, delta=0.1)
+
+    def test_points_below_seen_ground_are_no_hole(self):
+        # Made so: level ground without a gap, and points scattered below a part of it.
+        self.assertEqual(self.cloud("field", "ghosts_below_seen_ground", "ghosts.pcd"), [])
+
+    def test_most_craters_in_sand_are_holes_and_flat_sand_has_none(self):
+        # Each depth map (mm, 2.8 mm a pixel) shows one crater, or none. Enlarged 30 times, a crater
+        # is deepest at its middle. Those shallower than 0.25 m or gentler than 14 degrees are
+        # ground.
+        if numpy is None:
+            self.skipTest("numpy is missing")
+        folder = os.path.join(DATA, "real", "craters")
+        if not os.path.isdir(folder):
+            self.skipTest("no such recording: real/craters")
+        found = craters = 0
+        for name in sorted(os.listdir(folder)):
+            heights = -0.03 * numpy.load(os.path.join(folder, name))["depthmap"].astype(float)
+            holes = self.of_kind("negative", self.of_surface(heights, 0.0028 * 30))
+            if name.startswith("plane"):
+                self.assertEqual(holes, [], name)
+                continue
+            craters += 1
+            row, column = numpy.unravel_index(numpy.nanargmin(heights), heights.shape)
+            found += any(
+                math.dist(hole["center"][:2], (0.084 * column, 0.084 * row)) < 1.5
+                and hole["extent"][0] > 1
+                for hole in holes
+            )
+        self.assertGreaterEqual(found, 0.7 * craters)
+
+    def of_surface(self, heights, pixel):
+        cloud = self.path("surface.pcd")
+        rows, columns = numpy.nonzero(numpy.isfinite(heights))
+        points = numpy.column_stack((columns * pixel, rows * pixel, heights[rows, columns]))
+        with open(cloud, "wb") as file:
+            head = (
+                "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\n"
+                f"WIDTH {len(points)}\nHEIGHT 1\nPOINTS {len(points)}\nDATA binary\n"
+            )
+            file.write(head.encode() + points.astype("<f4").tobytes())
+        return self.cloud(cloud)
 
     def test_a_log_with_ground_seen_below_it_is_an_obstacle(self):
         # Made so: 0.3 m thick, its underside 0.3 m above the ground.

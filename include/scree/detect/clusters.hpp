@@ -21,6 +21,7 @@ struct Cluster {
   Features features{};
   Evidence evidence = Evidence::none;  ///< that it is a hole
   bool is_terrace = false;             ///< ground on a higher level
+  bool is_crater = false;              ///< a closed depression of the ground
 };
 
 /// The clusters of one cloud with their points.

@@ -15,7 +15,7 @@ struct HeightRaster {
 };
 
 /// Finds craters whose flanks are nowhere too steep to be ground: closed depressions, deeper than
-/// 0.25 m below the lowest place of their rim, where a tenth of the area slopes by 17 degrees or
+/// 0.25 m below the lowest place of their rim, where a tenth of the area slopes by 18 degrees or
 /// more. Hollows of the ground are gentler. Water is let in from the raster's edge, lowest places
 /// first (priority flood; Barnes, Lehman and Mulla 2014), and what it must rise to is the rim.
 class Depressions {
@@ -25,6 +25,10 @@ public:
   /// Takes the cells of each such depression from the ground.
   /// @return whether there is any
   bool remove(const HeightRaster& raster, FixedVector<std::uint8_t>& ground);
+
+  /// Whether a cell was taken by the last remove().
+  bool holds(std::size_t cell) const { return cell < is_taken_.size() && is_taken_[cell] != 0; }
+  void clear() { is_taken_.clear(); }
 
 private:
   struct Shore {
@@ -41,8 +45,9 @@ private:
   FixedVector<float> level_;           // of the water in each cell
   FixedVector<Shore> shore_;           // heap of the cells next to dry ones
   FixedVector<std::uint8_t> is_done_;  // flooded, then collected
-  FixedVector<std::uint32_t> cells_;   // of one depression
-  FixedVector<float> slopes_;          // of these
+  FixedVector<std::uint8_t> is_taken_;
+  FixedVector<std::uint32_t> cells_;  // of one depression
+  FixedVector<float> slopes_;         // of these
 };
 
 }  // namespace scree

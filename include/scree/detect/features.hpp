@@ -46,8 +46,9 @@ enum Feature : std::size_t {
   kFeatures
 };
 inline constexpr std::size_t kPaperFeatures = 5;
-/// What the shipped network for clouds takes; the others need beams.
-inline constexpr std::size_t kCloudFeatures = solid_share;
+/// What the shipped network for clouds takes; the others tell tufts and uneven ground in sparser
+/// maps.
+inline constexpr std::size_t kCloudFeatures = cell_points;
 using Features = std::array<float, kFeatures>;
 
 }  // namespace scree

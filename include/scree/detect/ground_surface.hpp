@@ -56,6 +56,8 @@ public:
   float top(std::size_t cell) const {
     return *std::max_element(z_.begin() + begin_[cell], z_.begin() + begin_[cell + 1]);
   }
+  /// Whether a cell lies in a crater whose flanks are gentle enough for ground.
+  bool is_crater(std::size_t cell) const { return depressions_.holds(cell); }
   /// Area of the smooth patch that a cell belongs to, square metres; 0: to none.
   float patch_area(std::size_t cell) const {
     return patch_[cell] == kNoLabel

@@ -52,7 +52,10 @@ private:
   void gather_candidates(StageCounts& counts);
   void cluster(StageCounts& counts);
   void measure_clusters(const PointCloud& points);
+  template <class Condition>
+  float share_of(const Cluster& cluster, const Condition& condition) const;
   bool is_terrace(const Cluster& cluster) const;
+  bool is_crater(const Cluster& cluster) const;
 
   SurfaceSettings settings_;
   float highest_;  // metres above the ground

@@ -28,11 +28,9 @@ PointCloud ground_with(Shape&& shape) {
 /// Features of the largest cluster.
 /// @param beams of each point
 Features features_of(PointView cloud, std::span<const BeamCount> beams = {}) {
-  DetectSettings settings = DetectSettings::for_cloud();
-  settings.surface.clustering =
-      SurfaceClustering::euclidean;  // one cluster, whatever it is made of
   Detector detector(
-      settings, {.points = 40'000, .candidates = 40'000, .ground_cells = 1 << 14, .obstacles = 16},
+      DetectSettings::for_cloud(),
+      {.points = 40'000, .candidates = 40'000, .ground_cells = 1 << 14, .obstacles = 16},
       Network());
   FixedVector<Obstacle> unused(16);
   StageTimer timer;

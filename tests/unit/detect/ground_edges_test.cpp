@@ -153,7 +153,9 @@ TEST_F(GroundEdgesTest, WhereNothingIsSeenLostBeamsTellOfAShadow) {
   ASSERT_EQ(edges.size(), 1U);
   EXPECT_EQ(edges[0].evidence, Evidence::shadow);
   EXPECT_LT(edges[0].step, -0.15);
-  EXPECT_NEAR(edges[0].box.center_x, 2.2, 0.3);
+  const OrientedBox& box = edges[0].box;
+  EXPECT_NEAR(std::abs(box.yaw), 1.57, 0.05);
+  EXPECT_NEAR(box.center_x - box.width / 2, 2, 0.2) << "it begins where the ground ends";
 }
 
 }  // namespace
