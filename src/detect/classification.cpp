@@ -61,15 +61,19 @@ bool is_tall(const Cluster& cluster) {
          cluster.end - cluster.begin >= kFewest;
 }
 
+/// Takes one answer for right, whatever the network says.
+void overrule(float& right, float& wrong) {
+  constexpr float kSure = 0.9F;
+  right = std::max(right, kSure);
+  wrong = std::min(wrong, 1 - kSure);
+}
+
 Prediction classify(const Cluster& cluster, const Network& network) {
-  constexpr float kInTheWay = 0.9F;
   Prediction prediction = network(cluster.features);
   if (hangs(cluster) || is_tall(cluster)) {
-    prediction.positive = std::max(prediction.positive, kInTheWay);
-    prediction.negative = std::min(prediction.negative, 1 - kInTheWay);
+    overrule(prediction.positive, prediction.negative);
   } else if (cluster.is_crater) {
-    prediction.negative = std::max(prediction.negative, kInTheWay);
-    prediction.positive = std::min(prediction.positive, 1 - kInTheWay);
+    overrule(prediction.negative, prediction.positive);
   }
   return prediction;
 }

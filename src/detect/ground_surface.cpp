@@ -22,6 +22,7 @@ GroundSurface::GroundSurface(std::size_t max_points, std::size_t max_cells)
     : begin_(max_cells + 2),
       z_(max_points),
       seen_(max_cells),
+      top_(max_cells),
       smooth_(max_cells),
       ground_(max_cells),
       patch_(max_cells),
@@ -66,8 +67,11 @@ void GroundSurface::find_ground(const GroundSurfaceSettings& settings) {
     join_trend(settings.tolerance);
   }
   join_patches(settings.tolerance);
-  if (has_trend) add_trend(1, {&seen_, &smooth_});
-  if (!has_trend && depressions_.remove({columns_, rows_, cell_, smooth_.data()}, ground_)) span();
+  if (has_trend) {
+    add_trend(1, {&seen_, &smooth_});
+  } else if (depressions_.remove({columns_, rows_, cell_, smooth_.data()}, ground_)) {
+    span();
+  }
 }
 
 void GroundSurface::lay_out(PointView points, float cell_size) {
@@ -111,10 +115,14 @@ float GroundSurface::gather(PointView points) {
     z_[begin_[cell_at(points.x[i], points.y[i]) + 1]++] = points.z[i];
   }
   seen_.resize(cells);
+  top_.resize(cells);
   std::size_t occupied = 0;
   for (std::size_t cell = 0; cell < cells; ++cell) {
-    if (points_in(cell) > 0) ++occupied;
     seen_[cell] = height_in(cell, 0.5);
+    top_[cell] = -std::numeric_limits<float>::infinity();
+    if (points_in(cell) == 0) continue;
+    ++occupied;
+    top_[cell] = *std::max_element(z_.begin() + begin_[cell], z_.begin() + begin_[cell + 1]);
   }
   return static_cast<float>(points.size()) / static_cast<float>(std::max<std::size_t>(occupied, 1));
 }

@@ -19,7 +19,6 @@ HoleEvidence::HoleEvidence(std::size_t max_cells)
       beams_below_(max_cells),
       lost_beams_(max_cells),
       lowest_beam_(max_cells),
-      top_(max_cells),
       cells_(max_cells),
       taken_by_(max_cells) {}
 
@@ -34,10 +33,6 @@ void HoleEvidence::build(const SeenCloud& cloud, const GroundSurface& surface) {
   number_ = 0;
   knows_beams_ = !cloud.origins.empty();
   if (!knows_beams_) return;
-  top_.assign(cells, -std::numeric_limits<float>::infinity());
-  for (std::size_t cell = 0; cell < cells; ++cell) {
-    if (surface.points_in(cell) > 0) top_[cell] = surface.top(cell);
-  }
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     const Eigen::Vector3f point(cloud.points.x[i], cloud.points.y[i], cloud.points.z[i]);
     if (!point.allFinite() || point.z() > surface.height(point.x(), point.y()) - kBelow) continue;
@@ -56,7 +51,7 @@ void HoleEvidence::follow_passing(const PassingBeam& beam, const GroundSurface& 
     if (!surface.covers(at.x(), at.y())) return;
     if (at.z() > surface.height(at.x(), at.y())) {
       // It should have ended there: a shot whose return was lost.
-      if (top_[surface.cell_at(at.x(), at.y())] > at.z() + kBelow) return;
+      if (surface.top(surface.cell_at(at.x(), at.y())) > at.z() + kBelow) return;
       continue;
     }
     const float way = static_cast<float>(i) * surface.cell_size();

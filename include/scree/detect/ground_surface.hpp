@@ -52,10 +52,8 @@ public:
   float roughness(std::size_t cell) const { return std::abs(seen_[cell] - smooth_[cell]); }
   /// Median height of the points in a cell, metres; NaN: not seen.
   float seen(std::size_t cell) const { return seen_[cell]; }
-  /// z of the highest point in a cell, metres. @pre it has points
-  float top(std::size_t cell) const {
-    return *std::max_element(z_.begin() + begin_[cell], z_.begin() + begin_[cell + 1]);
-  }
+  /// z of the highest point in a cell, metres; minus infinity without one.
+  float top(std::size_t cell) const { return top_[cell]; }
   /// Whether a cell lies in a crater whose flanks are gentle enough for ground.
   bool is_crater(std::size_t cell) const { return depressions_.holds(cell); }
   /// Area of the smooth patch that a cell belongs to, square metres; 0: to none.
@@ -77,12 +75,12 @@ public:
     const std::size_t column = cell % columns_, row = cell / columns_;
     return column > 0 && column + 1 < columns_ && row > 0 && row + 1 < rows_;
   }
-  /// Place on the raster in cells, from its edge; at least 2 cells lie beyond every point.
   /// Middle of a column or a row, metres.
   float x_of(std::size_t column) const {
     return low_x_ + (static_cast<float>(column) + 0.5F) * cell_;
   }
   float y_of(std::size_t row) const { return low_y_ + (static_cast<float>(row) + 0.5F) * cell_; }
+  /// Place on the raster in cells, from its edge; at least 2 cells lie beyond every point.
   float column_of(float x) const { return (x - low_x_) * inverse_; }
   float row_of(float y) const { return (y - low_y_) * inverse_; }
   /// Number of points in a cell; 0: not seen.
@@ -116,6 +114,7 @@ private:
   FixedVector<std::uint32_t> begin_;  // where each cell's points begin in z_, and one more
   FixedVector<float> z_;              // z of the points, cell by cell
   FixedVector<float> seen_;           // height seen in each cell; NaN: no point
+  FixedVector<float> top_;            // z of the highest point in each cell
   FixedVector<float> smooth_;         // scratch: blurred heights, then the ground's
   FixedVector<std::uint8_t> ground_;
   FixedVector<std::uint32_t> patch_;  // number of each cell's patch

@@ -47,7 +47,6 @@ private:
   FixedVector<float> into_, through_ground_;  // beams that ended below the ground, by cell
   FixedVector<std::uint16_t> beams_below_, lost_beams_;
   FixedVector<float> lowest_beam_;
-  FixedVector<float> top_;                       // z of the highest point in each cell, metres
   FixedVector<std::uint32_t> cells_, taken_by_;  // of the cluster, and the void beside it
   std::size_t seen_cells_ = 0;                   // the first of them: those with members
   std::uint32_t number_ = 0;
