@@ -110,7 +110,6 @@ void classify(const ClusteredPoints& found, const Network& network, double min_c
     if (!is_positive && cluster.evidence == Evidence::none) continue;
     ++counts.obstacles;
     Obstacle obstacle = obstacle_of(cluster, prediction, height);
-    obstacle.id = static_cast<std::int64_t>(obstacles.size()) + 1;
     obstacle.footprint = polygons.around(found.points.points, found.clusters.members(cluster));
     if (!obstacles.push_back(obstacle)) ++counts.obstacles_dropped;
   }
@@ -135,9 +134,6 @@ void add_edges(const GroundEdges& edges, EnclosingPolygons& polygons,
     ++counts.obstacles;
     obstacle.footprint = polygons.around(edges.places(), edge.begin, edge.end);
     if (!obstacles.push_back(obstacle)) ++counts.obstacles_dropped;
-  }
-  for (std::size_t i = 0; i < obstacles.size(); ++i) {
-    obstacles[i].id = static_cast<std::int64_t>(i) + 1;
   }
 }
 

@@ -44,6 +44,8 @@ void Detector::detect(const SeenCloud& cloud, FixedVector<Obstacle>& obstacles, 
   if (const auto* surface = std::get_if<SurfaceMethod>(&method_)) {
     add_edges(surface->edges(), polygons_, obstacles, counts_);
   }
+  std::int64_t id = 0;
+  for (Obstacle& obstacle : obstacles) obstacle.id = ++id;
   timer.done(Stage::network);
 }
 

@@ -11,6 +11,7 @@ namespace scree {
 namespace {
 
 template <class Number>
+requires std::is_arithmetic_v<Number>
 void append(std::string& text, Number number) {
   if constexpr (std::is_floating_point_v<Number>) {
     if (!std::isfinite(number)) {
@@ -47,41 +48,47 @@ void append(std::string& text, const ConvexPolygon& polygon) {
   text += ']';
 }
 
-void append(std::string& text, const Obstacle& obstacle) {
-  text += "{\"id\": ";
-  append(text, obstacle.id);
-  text += ", \"kind\": \"";
-  text += name(obstacle.kind);
-  text += "\", \"confidence\": ";
-  append(text, obstacle.confidence);
-  text += ", \"center\": ";
-  append(text, obstacle.center);
-  text += ", \"extent\": ";
-  append(text, obstacle.extent);
-  text += ", \"yaw\": ";
-  append(text, obstacle.yaw);
-  text += ", \"height\": ";
-  append(text, obstacle.height);
-  text += ", \"points\": ";
-  append(text, obstacle.points);
-  if (obstacle.evidence != Evidence::none) {
-    text += ", \"evidence\": \"";
-    text += name(obstacle.evidence);
-    text += '"';
-  }
-  if (obstacle.footprint.has_area()) {
-    text += ", \"footprint\": ";
-    append(text, obstacle.footprint);
-  }
-  text += '}';
+void append(std::string& text, std::string_view word) {
+  text += '"';
+  text += word;
+  text += '"';
+}
+
+void append(std::string& text, const Pose& pose);
+
+/// The next member of an object. The first one gives its opening brace as `separator`.
+template <class Value>
+void append_member(std::string& text, std::string_view key, const Value& value,
+                   std::string_view separator = ", ") {
+  text += separator;
+  append(text, key);
+  text += ": ";
+  append(text, value);
+}
+
+void append_member(std::string& text, std::string_view key, std::initializer_list<double> numbers,
+                   std::string_view separator = ", ") {
+  append_member<std::initializer_list<double>>(text, key, numbers, separator);
 }
 
 void append(std::string& text, const Pose& pose) {
   const Eigen::Quaterniond& q = pose.rotation;
-  text += "{\"p\": ";
-  append(text, pose.translation);
-  text += ", \"q\": ";
-  append(text, {q.w(), q.x(), q.y(), q.z()});
+  append_member(text, "p", pose.translation, "{");
+  append_member(text, "q", {q.w(), q.x(), q.y(), q.z()});
+  text += '}';
+}
+
+void append(std::string& text, const Obstacle& obstacle) {
+  append_member(text, "id", obstacle.id, "{");
+  append_member(text, "kind", name(obstacle.kind));
+  append_member(text, "confidence", obstacle.confidence);
+  append_member(text, "center", obstacle.center);
+  append_member(text, "extent", obstacle.extent);
+  append_member(text, "yaw", obstacle.yaw);
+  append_member(text, "height", obstacle.height);
+  append_member(text, "points", obstacle.points);
+  if (obstacle.evidence != Evidence::none) append_member(text, "evidence", name(obstacle.evidence));
+  if (obstacle.footprint.has_area()) append_member(text, "footprint", obstacle.footprint);
   text += '}';
 }
 
@@ -98,21 +105,19 @@ void append(std::string& text, std::span<const CellState> states) {
   text += '"';
 }
 
+void append_stamp_and_pose(std::string& text, std::int64_t stamp_ns, const Pose& pose) {
+  append_member(text, "stamp_ns", stamp_ns, "{");
+  append_member(text, "pose", pose);
+}
+
 }  // namespace
 
 void append_json_line(const ObstacleGrid& grid, std::string& text) {
-  text += "{\"stamp_ns\": ";
-  append(text, grid.stamp_ns);
-  text += ", \"pose\": ";
-  append(text, grid.pose);
-  text += ", \"origin\": ";
-  append(text, {grid.origin.x(), grid.origin.y()});
-  text += ", \"cell_size\": ";
-  append(text, grid.cell_size);
-  text += ", \"columns\": ";
-  append(text, grid.columns);
-  text += ", \"rows\": ";
-  append(text, grid.rows);
+  append_stamp_and_pose(text, grid.stamp_ns, grid.pose);
+  append_member(text, "origin", {grid.origin.x(), grid.origin.y()});
+  append_member(text, "cell_size", grid.cell_size);
+  append_member(text, "columns", grid.columns);
+  append_member(text, "rows", grid.rows);
   text += ", \"states\": [";
   for (std::size_t row = 0; row < grid.rows; ++row) {
     if (row > 0) text += ", ";
@@ -130,10 +135,7 @@ void append_json_line(const ObstacleGrid& grid, std::string& text) {
 }
 
 void append_json_line(const ObstacleList& list, std::string& text) {
-  text += "{\"stamp_ns\": ";
-  append(text, list.stamp_ns);
-  text += ", \"pose\": ";
-  append(text, list.pose);
+  append_stamp_and_pose(text, list.stamp_ns, list.pose);
   text += ", \"obstacles\": [";
   std::string_view separator;
   for (const Obstacle& obstacle : list.obstacles) {

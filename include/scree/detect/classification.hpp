@@ -9,9 +9,8 @@
 
 namespace scree {
 
-/// Writes an obstacle, numbered from 1, for each cluster that the network takes for one with at
-/// least so much confidence. A rock below the ground and a hole above it are the network's errors,
-/// and left out.
+/// Writes an obstacle for each cluster that the network takes for one with at least so much
+/// confidence. A rock below the ground and a hole above it are the network's errors, and left out.
 /// @param polygons make the footprints
 void classify(const ClusteredPoints& found, const Network& network, double min_confidence,
               EnclosingPolygons& polygons, FixedVector<Obstacle>& obstacles, StageCounts& counts);

@@ -36,6 +36,8 @@ public:
   const PointCloud& places() const { return places_; }
 
 private:
+  static constexpr float kStrip = 0.4F;  // metres beyond an edge that belong to it
+
   /// What lies beyond a cell of the ground in one direction.
   struct Beyond {
     float step = 0;          ///< metres, 0: no edge
