@@ -86,6 +86,7 @@ void append(std::string& text, const Obstacle& obstacle) {
   append_member(text, "extent", obstacle.extent);
   append_member(text, "yaw", obstacle.yaw);
   append_member(text, "height", obstacle.height);
+  append_member(text, "velocity", {obstacle.velocity.x(), obstacle.velocity.y()});
   append_member(text, "points", obstacle.points);
   if (obstacle.evidence != Evidence::none) append_member(text, "evidence", name(obstacle.evidence));
   if (obstacle.footprint.has_area()) append_member(text, "footprint", obstacle.footprint);

@@ -51,6 +51,7 @@ void to_message(const Obstacle& from, obstacle_t& to) {
   to_array(from.extent, to.extent);
   to.yaw = from.yaw;
   to.height = from.height;
+  std::copy_n(from.velocity.data(), 2, to.velocity);
   to.points = static_cast<std::int32_t>(from.points);
   to.evidence = static_cast<std::int8_t>(from.evidence);
   const std::size_t corners = from.footprint.has_area() ? from.footprint.size() : 0;
@@ -71,6 +72,7 @@ Obstacle from_message(const obstacle_t& from) {
   to.extent = to_vector(from.extent);
   to.yaw = from.yaw;
   to.height = from.height;
+  to.velocity = {from.velocity[0], from.velocity[1]};
   to.points = static_cast<std::uint32_t>(from.points);
   to.evidence = evidence_of(from.evidence);
   for (std::size_t i = 0; i < static_cast<std::size_t>(from.corners); ++i) {

@@ -79,6 +79,21 @@ Matching match(std::size_t obstacles, std::size_t detections,
   return matching;
 }
 
+/// Whether a moving obstacle covered a place in base in the seconds before.
+bool lies_behind_one(const Eigen::Vector2d& place, const Truth& truth, const Pose& true_to_base,
+                     std::int64_t stamp_ns) {
+  constexpr std::int64_t kSeconds = 10, kStepNs = 100'000'000;
+  for (const TrueObstacle& obstacle : truth.obstacles) {
+    if (!obstacle.moves()) continue;
+    for (std::int64_t step = 0; step <= kSeconds * 1'000'000'000 / kStepNs; ++step) {
+      const TrueObstacle then = obstacle.at(stamp_ns - step * kStepNs);
+      const Shadow shadow(true_to_base, then.center, then.footprint);
+      if (distance_to(shadow.outline, place) <= kGrowth) return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 Comparison compare(const Truth& truth, const Truth::Sight& sight, const ObstacleList& list) {
@@ -86,7 +101,8 @@ Comparison compare(const Truth& truth, const Truth::Sight& sight, const Obstacle
   const Pose reported_to_base = list.pose.inverse();
   std::vector<Shadow> obstacles, detections;
   for (const TrueObstacle& each : truth.obstacles) {
-    obstacles.emplace_back(true_to_base, each.center, each.footprint);
+    const TrueObstacle there = each.at(list.stamp_ns);
+    obstacles.emplace_back(true_to_base, there.center, there.footprint);
   }
   for (const Obstacle& each : list.obstacles) {
     const ConvexPolygon outline = outline_of(each);
@@ -105,7 +121,8 @@ Comparison compare(const Truth& truth, const Truth::Sight& sight, const Obstacle
     const auto at = std::ranges::find(truth.obstacles, id, &TrueObstacle::id);
     const auto o = static_cast<std::size_t>(at - truth.obstacles.begin());
     const bool is_right = found_by[o] != kNone && list.obstacles[found_by[o]].kind == at->kind;
-    comparison.asked.push_back({&*at, obstacles[o].range(), is_right});
+    const Obstacle* const detection = is_right ? &list.obstacles[found_by[o]] : nullptr;
+    comparison.asked.push_back({&*at, obstacles[o].range(), detection});
   }
   for (std::size_t d = 0; d < detections.size(); ++d) {
     const Obstacle& detection = list.obstacles[d];
@@ -115,7 +132,9 @@ Comparison compare(const Truth& truth, const Truth::Sight& sight, const Obstacle
       const auto nearest = std::ranges::find(nearest_first, d, &Candidate::detection);
       if (nearest != nearest_first.end() && is_in(sight.ignore, nearest->obstacle)) continue;
     }
-    comparison.false_alarms.push_back({&detection, detections[d].range()});
+    const bool is_ghost = !detection.velocity.isZero() ||
+                          lies_behind_one(detections[d].center, truth, true_to_base, list.stamp_ns);
+    comparison.false_alarms.push_back({&detection, detections[d].range(), is_ghost});
   }
   return comparison;
 }

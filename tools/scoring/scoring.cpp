@@ -45,16 +45,17 @@ int band_of(double range) {
 }
 
 void count(ScoringResult& result, const Comparison& comparison) {
-  for (const auto& [obstacle, range, is_right] : comparison.asked) {
-    const auto add = [&, right = is_right](Score& score) {
-      ++(right ? score.true_positives : score.false_negatives);
+  for (const Comparison::Asked& asked : comparison.asked) {
+    const auto& [obstacle, range, detection] = asked;
+    const auto add = [&](Score& score) {
+      ++(asked.is_right() ? score.true_positives : score.false_negatives);
     };
     add(of_kind(result.scores, obstacle->kind));
     add(of_kind(result.by_range[band_of(range)], obstacle->kind));
     add(of_size(result, obstacle->kind, obstacle->height));
     if (!obstacle->shape.empty()) add(result.by_shape[obstacle->shape]);
   }
-  for (const auto& [detection, range] : comparison.false_alarms) {
+  for (const auto& [detection, range, is_ghost] : comparison.false_alarms) {
     ++of_kind(result.scores, detection->kind).false_positives;
     ++of_kind(result.by_range[band_of(range)], detection->kind).false_positives;
     ++of_size(result, detection->kind, detection->height).false_positives;
@@ -67,18 +68,54 @@ struct Story {
   std::optional<double> asked;   // range when it was asked for first
   std::optional<double> first;   // range at the first right match
   std::optional<double> stayed;  // range at which the right matches began that have not ended
+  std::int64_t asked_ns = 0, first_ns = 0;  // when
 
-  void tell(const Comparison::Asked& now) {
+  void tell(const Comparison::Asked& now, std::int64_t now_ns) {
     obstacle = now.obstacle;
+    if (!asked) asked_ns = now_ns;
     if (!asked) asked = now.range;
-    if (!now.is_right) {
+    if (!now.is_right()) {
       stayed.reset();
       return;
     }
+    if (!first) first_ns = now_ns;
     if (!first) first = now.range;
     if (!stayed) stayed = now.range;
   }
+  double delay() const { return static_cast<double>(first_ns - asked_ns) * 1e-9; }
 };
+
+/// Counts apart what moves and what stands.
+void count_moving(ScoringResult& result, const Comparison& comparison, const Truth& truth,
+                  const ObstacleList& list, const std::map<int, Story>& stories) {
+  constexpr std::int64_t kSettled = 500'000'000;  // after the first match
+  MovingScore& moving = result.moving;
+  const Eigen::Quaterniond to_truth =
+      truth.pose_at(list.stamp_ns).rotation * list.pose.rotation.conjugate();
+  for (const Comparison::Asked& asked : comparison.asked) {
+    if (!asked.obstacle->moves()) {
+      Score& standing = of_kind(result.standing, asked.obstacle->kind);
+      ++(asked.is_right() ? standing.true_positives : standing.false_negatives);
+      continue;
+    }
+    ++moving.asked;
+    if (!asked.is_right()) continue;
+    ++moving.found;
+    if (list.stamp_ns < stories.at(asked.obstacle->id).first_ns + kSettled) continue;
+    const Eigen::Vector2d& velocity = asked.detection->velocity;
+    const Eigen::Vector3d in_truth = to_truth * Eigen::Vector3d(velocity.x(), velocity.y(), 0);
+    moving.velocity_errors.push_back(
+        (in_truth.head<2>() - asked.obstacle->velocity_at(list.stamp_ns)).norm());
+  }
+  ++moving.lists;
+  const auto ghosts = static_cast<std::size_t>(
+      std::ranges::count(comparison.false_alarms, true, &Comparison::FalseAlarm::is_ghost));
+  moving.ghosts += ghosts;
+  moving.lists_with_ghosts += ghosts > 0 ? 1 : 0;
+  for (const Comparison::FalseAlarm& alarm : comparison.false_alarms) {
+    ++of_kind(result.standing, alarm.detection->kind).false_positives;
+  }
+}
 
 }  // namespace
 
@@ -97,6 +134,7 @@ void Scorer::add(const Truth& truth, std::span<const ObstacleList> lists) {
   std::set<std::size_t> covered;
   std::map<int, Story> stories;
   std::vector<PosePair> poses;
+  const bool has_moving = std::ranges::any_of(truth.obstacles, &TrueObstacle::moves);
   for (const ObstacleList& list : lists) {
     const auto entry = entry_of(truth, lists, list.stamp_ns);
     if (!entry) {
@@ -106,7 +144,10 @@ void Scorer::add(const Truth& truth, std::span<const ObstacleList> lists) {
     covered.insert(*entry);
     const Comparison comparison = compare(truth, truth.visible[*entry], list);
     count(result_, comparison);
-    for (const auto& asked : comparison.asked) stories[asked.obstacle->id].tell(asked);
+    for (const auto& asked : comparison.asked) {
+      stories[asked.obstacle->id].tell(asked, list.stamp_ns);
+    }
+    if (has_moving) count_moving(result_, comparison, truth, list, stories);
     poses.push_back({list.stamp_ns, list.pose, truth.pose_at(list.stamp_ns)});
   }
   ++result_.runs;
@@ -119,6 +160,11 @@ void Scorer::add(const Truth& truth, std::span<const ObstacleList> lists) {
   }
   if (truth.visible.size() > 1) {
     for (const auto& [id, story] : stories) {
+      if (story.obstacle->moves()) {
+        ++result_.moving.obstacles;
+        if (story.first) result_.moving.delays.push_back(story.delay());
+        continue;
+      }
       WarningDistances& warning = story.obstacle->kind == ObstacleKind::positive
                                       ? result_.positive_warning
                                       : result_.negative_warning;

@@ -25,6 +25,18 @@ struct WarningDistances {
 
 double median(std::vector<double> values);  ///< 0 for none
 
+/// How obstacles that move fared.
+struct MovingScore {
+  std::size_t asked = 0, found = 0;     ///< in all lists
+  std::size_t obstacles = 0;            ///< asked for at least once
+  std::vector<double> delays;           ///< from the first list that was asked for one to its first
+                                        ///< right match, seconds; none of those never found
+  std::vector<double> velocity_errors;  ///< of right matches 0.5 s after the first one, m/s
+  std::size_t lists = 0;                ///< of the runs that have some
+  std::size_t ghosts = 0;               ///< false positives that move, or lie where one has been
+  std::size_t lists_with_ghosts = 0;
+};
+
 /// What the scoring says of any number of runs.
 struct ScoringResult {
   static constexpr double kLeastCoverage = 0.95;
@@ -41,6 +53,9 @@ struct ScoringResult {
   std::size_t runs_not_covered = 0;     ///< coverage under kLeastCoverage
 
   Scores scores;
+  /// Of what stands, in runs where something moves; every false positive counts.
+  Scores standing;
+  MovingScore moving;
   /// By distance, the key times kRangeBand is a band's near end; a false positive stands at the
   /// range of the detection, the others at that of the obstacle.
   std::map<int, Scores> by_range;

@@ -2,12 +2,14 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <set>
 
 #include "scoring/json_field.hpp"
@@ -22,6 +24,25 @@ int id_of(const JsonField& field) {
       field.integer(std::numeric_limits<int>::min(), std::numeric_limits<int>::max()));
 }
 
+/// A time, which must not fall from entry to entry.
+std::int64_t time_of(const JsonField& field, std::int64_t& last_ns) {
+  const std::int64_t t_ns = field.integer();
+  if (t_ns < last_ns) field.refuse(fmt::format("{} is before the entry above it", t_ns));
+  return last_ns = t_ns;
+}
+
+std::vector<TrueObstacle::Place> track_of(const JsonField& field) {
+  std::vector<TrueObstacle::Place> track;
+  std::int64_t last_ns = std::numeric_limits<std::int64_t>::min();
+  for (const JsonField& place : field.items()) {
+    const auto each = place.items(4);
+    track.push_back(
+        {time_of(each[0], last_ns), {each[1].number(), each[2].number()}, each[3].number()});
+  }
+  if (track.empty()) field.refuse("it has no place");
+  return track;
+}
+
 TrueObstacle obstacle_of(const JsonField& field) {
   TrueObstacle obstacle;
   obstacle.id = id_of(field["id"]);
@@ -29,6 +50,7 @@ TrueObstacle obstacle_of(const JsonField& field) {
   obstacle.center = field["center"].vector();
   obstacle.height = field["height"].number();
   if (field.has("shape")) obstacle.shape = field["shape"].text();
+  if (field.has("track")) obstacle.track = track_of(field["track"]);
   const JsonField footprint = field["footprint"];
   for (const JsonField& corner : footprint.items()) {
     const auto each = corner.items(2);
@@ -37,13 +59,6 @@ TrueObstacle obstacle_of(const JsonField& field) {
   obstacle.footprint = uncrossed(std::move(obstacle.footprint));
   if (obstacle.footprint.empty()) footprint.refuse("it has no area");
   return obstacle;
-}
-
-/// A time, which must not fall from entry to entry.
-std::int64_t time_of(const JsonField& field, std::int64_t& last_ns) {
-  const std::int64_t t_ns = field.integer();
-  if (t_ns < last_ns) field.refuse(fmt::format("{} is before the entry above it", t_ns));
-  return last_ns = t_ns;
 }
 
 Truth truth_of(const JsonField& file) {
@@ -98,6 +113,9 @@ Json to_json(const TrueObstacle& obstacle) {
             {"footprint", footprint},
             {"height", rounded(obstacle.height)}};
   if (!obstacle.shape.empty()) json["shape"] = obstacle.shape;
+  for (const auto& [t_ns, position, yaw] : obstacle.track) {
+    json["track"].push_back({t_ns, rounded(position.x()), rounded(position.y()), rounded(yaw)});
+  }
   return json;
 }
 
@@ -117,19 +135,62 @@ Json to_json(const Truth& truth) {
   return json;
 }
 
+/// The entries around a time, and how far it lies from the one to the other. Before the first and
+/// after the last entry both are that one.
+template <class Entry>
+struct Between {
+  const Entry &before, &after;
+  double share = 0;
+
+  /// @pre !entries.empty()
+  Between(const std::vector<Entry>& entries, std::int64_t t_ns)
+      : Between(t_ns, std::ranges::lower_bound(entries, t_ns, {}, &Entry::t_ns), entries) {}
+
+private:
+  template <class Iterator>
+  Between(std::int64_t t_ns, Iterator at, const std::vector<Entry>& entries)
+      : before(at == entries.begin() ? *at : *(at - 1)),
+        after(at == entries.end() ? *(at - 1) : *at) {
+    // In double before subtracting: times from outside may lie further apart than an int64 holds.
+    const auto begin = static_cast<double>(before.t_ns);
+    const double step = static_cast<double>(after.t_ns) - begin;
+    if (step > 0) share = (static_cast<double>(t_ns) - begin) / step;
+  }
+};
+
 }  // namespace
 
 Pose Truth::pose_at(std::int64_t t_ns) const {
-  const auto after = std::ranges::lower_bound(poses, t_ns, {}, &TimedPose::t_ns);
-  if (after == poses.begin()) return poses.front().base;
-  if (after == poses.end()) return poses.back().base;
-  const TimedPose& before = *(after - 1);
-  // In double before subtracting: times from outside may lie further apart than an int64 holds.
-  const double step = static_cast<double>(after->t_ns) - static_cast<double>(before.t_ns);
-  const double share =
-      step > 0 ? (static_cast<double>(t_ns) - static_cast<double>(before.t_ns)) / step : 1;
-  return {before.base.translation + share * (after->base.translation - before.base.translation),
-          before.base.rotation.slerp(share, after->base.rotation)};
+  const auto [before, after, share] = Between(poses, t_ns);
+  return {before.base.translation + share * (after.base.translation - before.base.translation),
+          before.base.rotation.slerp(share, after.base.rotation)};
+}
+
+TrueObstacle::Place place_at(const std::vector<TrueObstacle::Place>& track, std::int64_t t_ns) {
+  const auto [before, after, share] = Between(track, t_ns);
+  const double turn = std::remainder(after.yaw - before.yaw, 2 * std::numbers::pi);
+  return {t_ns, before.position + share * (after.position - before.position),
+          before.yaw + share * turn};
+}
+
+TrueObstacle TrueObstacle::at(std::int64_t t_ns) const {
+  TrueObstacle there = *this;
+  if (!moves()) return there;
+  const Place first = track.front(), now = place_at(track, t_ns);
+  const Eigen::Rotation2Dd turn(now.yaw - first.yaw);
+  const auto moved = [&](const Eigen::Vector2d& point) -> Eigen::Vector2d {
+    return now.position + turn * (point - first.position);
+  };
+  there.center.head<2>() = moved(center.head<2>());
+  for (Eigen::Vector2d& corner : there.footprint) corner = moved(corner);
+  return there;
+}
+
+Eigen::Vector2d TrueObstacle::velocity_at(std::int64_t t_ns) const {
+  constexpr std::int64_t kAround = 100'000'000;
+  if (!moves()) return Eigen::Vector2d::Zero();
+  const Eigen::Vector2d before = place_at(track, t_ns - kAround).position;
+  return (place_at(track, t_ns + kAround).position - before) / (2e-9 * kAround);
 }
 
 Result<Truth> read_truth(const std::filesystem::path& file) {

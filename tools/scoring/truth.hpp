@@ -13,15 +13,34 @@
 
 namespace scree {
 
-/// A rock or a hole that is truly there.
+/// A rock, a hole, or someone who walks by: what is truly there.
 struct TrueObstacle {
+  /// Where it is at a time.
+  struct Place {
+    std::int64_t t_ns;
+    Eigen::Vector2d position;
+    double yaw;  ///< radians
+  };
   int id = 0;
   ObstacleKind kind = ObstacleKind::positive;
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   Outline footprint;
   double height = 0;  ///< above the ground around, metres; below zero: depth
   std::string shape;  ///< what it is ("boulder", "ditch", ...); empty: unknown
+  /// Of one that moves: centre and footprint are those at its first place.
+  std::vector<Place> track = {};
+
+  bool moves() const { return !track.empty(); }
+  /// Centre and footprint at a time: between two places interpolated, before the first and after
+  /// the last one as there.
+  TrueObstacle at(std::int64_t t_ns) const;
+  /// x, y at a time, m/s: from 0.1 s before to 0.1 s after it.
+  Eigen::Vector2d velocity_at(std::int64_t t_ns) const;
 };
+
+/// Between two places interpolated, before the first and after the last one as there.
+/// @pre !track.empty()
+TrueObstacle::Place place_at(const std::vector<TrueObstacle::Place>& track, std::int64_t t_ns);
 
 /// What truth.json says: one gravity-aligned world frame, metres.
 struct Truth {

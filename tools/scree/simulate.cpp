@@ -119,6 +119,21 @@ void add_drive(CLI::App& command, CaptureSettings& capture, CLI::Option* cloud) 
   command.add_flag("--reverse", capture.reverse, "drives backwards for a stretch")
       ->excludes(cloud)
       ->excludes(at_rest);
+  command.add_flag("--turns", capture.turns, "stops for a while and turns on the spot")
+      ->excludes(cloud)
+      ->excludes(at_rest);
+}
+
+void add_movers(CLI::App& command, MoverCounts& movers, CLI::Option* cloud) {
+  const auto add = [&](const char* name, int& count, const char* help) {
+    command.add_option(name, count, help)
+        ->excludes(cloud)
+        ->check(CLI::Range(0, 50))
+        ->capture_default_str();
+  };
+  add("--people", movers.people, "who walk or run near the robot; those without a way stay away");
+  add("--animals", movers.animals, "likewise");
+  add("--vehicles", movers.vehicles, "likewise");
 }
 
 void add_imu(CLI::App& command, CaptureSettings& capture, CLI::Option* cloud) {
@@ -150,6 +165,7 @@ void add_simulate(CLI::App& app) {
         return scene_named(name) ? std::string() : "there is no scene " + name;
       });
   add_drive(*command, options->capture, cloud);
+  add_movers(*command, options->capture.movers, cloud);
   add_imu(*command, options->capture, cloud);
   add_faults(*command, *options, cloud);
   command->add_option("--points", options->points.points, "of the cloud")

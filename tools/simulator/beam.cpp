@@ -32,7 +32,11 @@ const FixedVector<Echo>& Beam::cast(const Eigen::Vector3d& origin, const Eigen::
 bool Beam::add(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double share,
                Random& random) {
   const auto ground = caster_.cast(origin, direction, reach_);
-  const auto met = terrain_.volumes().cast(origin, direction, ground.value_or(reach_), random);
+  auto met = terrain_.volumes().cast(origin, direction, ground.value_or(reach_), random);
+  if (movers_ != nullptr) {
+    const double free = met ? met->range : ground.value_or(reach_);
+    if (const auto mover = movers_->cast(origin, direction, free)) met = mover;
+  }
   if (!ground && !met) return false;
   if (met && met->volume->is_dark) return false;
   Echo echo;

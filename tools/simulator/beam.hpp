@@ -5,6 +5,7 @@
 
 #include "scree/core/fixed_vector.hpp"
 #include "scree/core/random.hpp"
+#include "simulator/movers.hpp"
 #include "simulator/ray_caster.hpp"
 #include "simulator/terrain.hpp"
 
@@ -31,6 +32,8 @@ public:
   /// Keeps references to terrain and caster.
   Beam(const Terrain& terrain, const RayCaster& caster, double reach)
       : terrain_(terrain), caster_(caster), reach_(reach), echoes_(kMostEchoes) {}
+  /// Keeps a reference: they may stand in the way, too.
+  void add(const PlacedMovers& movers) { movers_ = &movers; }
 
   /// Echoes from the nearest to the farthest, in the threshold's units; none from the sky.
   /// @param left, up across the direction; all three have length 1
@@ -45,6 +48,7 @@ private:
 
   const Terrain& terrain_;
   const RayCaster& caster_;
+  const PlacedMovers* movers_ = nullptr;
   double reach_;
   FixedVector<Echo> echoes_;
 };

@@ -64,14 +64,14 @@ Result<void> write_can(const std::filesystem::path& file, const Drive& drive, st
 /// Writes lidar.pcap and what it has shown. Returns the time of its end.
 Result<std::int64_t> write_lidar(const std::filesystem::path& file, const Drive& drive,
                                  Truth& truth, const std::function<void(std::size_t)>& progress) {
-  const auto& [settings, robot, terrain, motion] = drive;
+  const auto& [settings, robot, terrain, motion, movers] = drive;
   auto pcap = PcapWriter::create_ethernet(file);
   if (!pcap) return tl::make_unexpected(pcap.error());
   const RayCaster caster(terrain);
   SimulatedLidar lidar(terrain, caster, draw_lidar(settings, robot.lidar), motion,
-                       robot.lidar.mount(), kDriveStartNs, settings.seed);
+                       robot.lidar.mount(), kDriveStartNs, settings.seed, movers);
   Ethernet ethernet(*pcap, robot.lidar, settings.faults.packet_loss, settings.seed);
-  Observer observer(terrain, motion, truth);
+  Observer observer(drive, truth);
   // The packet that begins the turn after the last one is there too, so that the last sweep ends.
   const double turns = std::max(std::round(settings.seconds * settings.rate_hz), 1.0);
   while (observer.turns() < turns) {
@@ -110,7 +110,8 @@ Result<void> write_capture(const std::filesystem::path& folder, const CaptureSet
   for (std::int64_t t = kDriveStartNs; t < *end + kPoseStepNs; t += kPoseStepNs) {
     truth.poses.push_back({t, drive.motion.base(t)});
   }
-  return write_truth(folder / "truth.json", drive.terrain, truth);
+  truth.obstacles = true_obstacles(drive.terrain, drive.movers);
+  return write_truth(folder / "truth.json", truth);
 }
 
 Result<void> write_cloud(const std::filesystem::path& file, const CloudSettings& settings,
@@ -122,7 +123,8 @@ Result<void> write_cloud(const std::filesystem::path& file, const CloudSettings&
   truth.poses.push_back({0, Pose()});
   truth.visible.push_back({0, obstacle_ids(terrain), small_ids(terrain)});
   std::filesystem::path beside = file;
-  return write_truth(beside.replace_extension(".truth.json"), terrain, truth);
+  truth.obstacles = true_obstacles(terrain);
+  return write_truth(beside.replace_extension(".truth.json"), truth);
 }
 
 }  // namespace scree

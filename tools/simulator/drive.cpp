@@ -31,7 +31,8 @@ World draw_world(const CaptureSettings& settings) {
     // Some recordings begin while the robot drives already.
     const double lead = Random(settings.seed, 0x7AC5).uniform(0.3, 3.5);
     world.track =
-        draw_track({lead + settings.seconds + 1, settings.speed, settings.reverse}, settings.seed);
+        draw_track({lead + settings.seconds + 1, settings.speed, settings.reverse, settings.turns},
+                   settings.seed);
     world.track_start_ns = kDriveStartNs - static_cast<std::int64_t>(lead * 1e9);
     const auto way = thinned(world.track);
     const double length = 0.25 * static_cast<double>(way.size());
@@ -113,14 +114,17 @@ Drive::Drive(const CaptureSettings& drawn)
     : settings(drawn),
       robot(draw_robot(drawn.seed)),
       terrain(make_terrain(drawn)),
-      motion(make_motion(drawn, terrain)) {}
+      motion(make_motion(drawn, terrain)),
+      movers(draw_movers(drawn.movers, terrain, motion, kDriveStartNs,
+                         kDriveStartNs + static_cast<std::int64_t>(drawn.seconds * 1e9),
+                         drawn.seed)) {}
 
 void Observer::watch(const SimulatedLidar& lidar) {
   for (auto shots = lidar.shots(); !shots.empty(); shots = shots.subspan(velodyne::kLasers)) {
     const auto firing = shots.first(velodyne::kLasers);
     if (lidar.turns(firing.front().t_ns) >= turns_ + 1) {
       visibility_.end_sweep();
-      auto [ids, ignore] = visibility_.asked_for(motion_.base(last_shot_ns_));
+      auto [ids, ignore] = visibility_.asked_for(motion_.base(last_shot_ns_), last_shot_ns_);
       truth_.visible.push_back({last_shot_ns_, std::move(ids), std::move(ignore)});
       ++turns_;
     }
@@ -145,17 +149,17 @@ DriveFeed::DriveFeed(const Drive& drive, const Faults& faults)
       losses_(drive.settings.seed, 0x1055),
       caster_(drive.terrain),
       lidar_(drive.terrain, caster_, draw_lidar(drive.settings, drive.robot.lidar), drive.motion,
-             drive.robot.lidar.mount(), kDriveStartNs, drive.settings.seed),
+             drive.robot.lidar.mount(), kDriveStartNs, drive.settings.seed, drive.movers),
       imu_(drive.motion, drive.robot.imu_mount(), draw_imu(drive.settings),
            kDriveStartNs - kEncoderStepNs, drive.settings.seed),
       encoder_(make_encoder(drive)),
-      observer_(drive.terrain, drive.motion, truth_),
+      observer_(drive, truth_),
       next_sample_(imu_.next()),
       imu_noise_(drive.settings.seed, faults.imu_corruption),
       imu_stream_(drive.robot.imu, [this](const ImuSample& sample) { decoded_.push_back(sample); }),
       encoder_gain_(1 + draw_encoder(drive.settings).scale_error),
       encoder_ns_(kDriveStartNs - kEncoderStepNs) {
-  truth_.obstacles = true_obstacles(drive.terrain);
+  truth_.obstacles = true_obstacles(drive.terrain, drive.movers);
 }
 
 bool DriveFeed::next(Sweep& sweep, std::initializer_list<SyncBuffer*> sensors) {

@@ -13,6 +13,7 @@
 #include "simulator/faults.hpp"
 #include "simulator/imu.hpp"
 #include "simulator/lidar.hpp"
+#include "simulator/movers.hpp"
 #include "simulator/robot.hpp"
 #include "simulator/scene.hpp"
 #include "simulator/visibility.hpp"
@@ -25,6 +26,7 @@ struct CaptureSettings {
   double seconds = 20;       ///< rounded to whole turns, at least one
   double speed = 0;          ///< mean while driving, m/s; 0: drawn from 0.4 to 1.6
   bool reverse = false;      ///< drives backwards for a stretch
+  bool turns = false;        ///< stops for a while and turns on the spot
   bool at_rest = false;      ///< the robot stands level at the origin, the ground is level there
   double rate_hz = 10;       ///< turns of the lidar a second, 5 to 20
   bool dual = false;         ///< dual returns instead of the strongest
@@ -33,6 +35,7 @@ struct CaptureSettings {
   bool imu_bursts = false;   ///< a USB adapter hands the IMU's bytes on every 16 ms only
   double cell = 0.02;        ///< of the terrain's raster, metres
   double margin = 28;        ///< of terrain beyond the way, metres
+  MoverCounts movers;        ///< those that find no way are left out
   Faults faults;
 };
 
@@ -47,7 +50,8 @@ SimulatedLidarSettings draw_lidar(const CaptureSettings& settings, const LidarSe
 SimulatedImuSettings draw_imu(const CaptureSettings& settings);
 SimulatedEncoderSettings draw_encoder(const CaptureSettings& settings);
 
-/// A robot on its way over a terrain; sensors and terrain are those of the seed.
+/// A robot on its way over a terrain, and what moves there; sensors and terrain are those of the
+/// seed.
 struct Drive {
   explicit Drive(const CaptureSettings& settings);
 
@@ -55,13 +59,15 @@ struct Drive {
   Robot robot;
   Terrain terrain;
   Motion motion;
+  std::vector<Mover> movers;
 };
 
 /// Tells sweeps apart and notes at the end of each what has been seen.
 class Observer {
 public:
-  Observer(const Terrain& terrain, const Motion& motion, Truth& truth)
-      : visibility_(terrain), motion_(motion), truth_(truth) {}
+  /// Keeps references to both.
+  Observer(const Drive& drive, Truth& truth)
+      : visibility_(drive.terrain, drive.movers), motion_(drive.motion), truth_(truth) {}
 
   void watch(const SimulatedLidar& lidar);
   /// Turns finished since the motor's zero.

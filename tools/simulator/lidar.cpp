@@ -47,7 +47,8 @@ std::string nmea_sentence(std::int64_t t_ns) {
 
 SimulatedLidar::SimulatedLidar(const Terrain& terrain, const RayCaster& caster,
                                const SimulatedLidarSettings& settings, const Motion& motion,
-                               const Pose& mount, std::int64_t start_ns, std::uint64_t seed)
+                               const Pose& mount, std::int64_t start_ns, std::uint64_t seed,
+                               std::span<const Mover> movers)
     : settings_(settings),
       motion_(motion),
       mount_(mount),
@@ -55,9 +56,11 @@ SimulatedLidar::SimulatedLidar(const Terrain& terrain, const RayCaster& caster,
       packet_ns_(start_ns - packet_duration_ns(settings.mode)),
       random_(seed, 0x11DA),
       beam_(terrain, caster, settings.reach),
+      movers_(movers, terrain, terrain.parts().size()),
       dust_(settings.dust_puffs, motion, start_ns, seed),
       echoes_(Beam::kMostEchoes + 2),
       shot_count_(settings.mode == ReturnMode::dual ? kShots / 2 : kShots) {
+  if (!movers.empty()) beam_.add(movers_);
   const Lasers& lasers = lasers_of(settings.model);
   for (std::size_t i = 0; i < kLasers; ++i) {
     const double elevation = radians(lasers[i].elevation_deg);
@@ -74,6 +77,7 @@ SimulatedLidar::SimulatedLidar(const Terrain& terrain, const RayCaster& caster,
 void SimulatedLidar::advance() {
   packet_ns_ += packet_duration_ns(settings_.mode);
   dust_.advance(packet_ns_);
+  movers_.move_to(packet_ns_);
   for (std::size_t i = 0; i < shot_count_; ++i) {
     const auto firing = static_cast<std::int64_t>(i / kLasers);
     const auto laser = static_cast<std::int64_t>(i % kLasers);

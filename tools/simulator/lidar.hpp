@@ -34,7 +34,7 @@ struct SimulatedShot {
   std::int64_t t_ns = 0;
   float range = 0;                ///< as measured, metres; 0: no return
   std::uint8_t reflectivity = 0;  ///< as measured, 0..255
-  std::uint16_t part = 0;         ///< of the feature hit, see Echo
+  std::uint16_t part = 0;         ///< of the feature or mover hit, see Echo
   float relief = 0;               ///< how far above or below, metres
   // With dual returns the last return; above stands the strongest or, where that is the last, the
   // second strongest. With one return they are equal.
@@ -48,16 +48,18 @@ class SimulatedLidar {
 public:
   static constexpr std::size_t kMostShots = velodyne::kShots;
 
-  /// Keeps references to terrain, caster and motion.
+  /// Keeps references to terrain, caster, motion and movers.
   /// @param mount `lidar` in `base`
   /// @param start_ns host's time of the first shot
   SimulatedLidar(const Terrain& terrain, const RayCaster& caster,
                  const SimulatedLidarSettings& settings, const Motion& motion, const Pose& mount,
-                 std::int64_t start_ns, std::uint64_t seed);
+                 std::int64_t start_ns, std::uint64_t seed, std::span<const Mover> movers = {});
   /// A robot that stands at the origin.
   SimulatedLidar(const Terrain& terrain, const RayCaster& caster,
                  const SimulatedLidarSettings& settings, const Pose& mount, std::int64_t start_ns,
                  std::uint64_t seed);
+  SimulatedLidar(const SimulatedLidar&) = delete;  // the beam refers to the movers
+  SimulatedLidar& operator=(const SimulatedLidar&) = delete;
 
   /// Casts the shots of the next data packet.
   void advance();
@@ -98,6 +100,7 @@ private:
   std::int64_t start_ns_, packet_ns_;
   Random random_;
   Beam beam_;
+  PlacedMovers movers_;
   Dust dust_;
   FixedVector<Echo> echoes_;
   std::array<Laser, velodyne::kLasers> lasers_{};

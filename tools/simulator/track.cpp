@@ -43,7 +43,7 @@ private:
 /// Speed over time: stands, drives off, may stop once or drive backwards once.
 class SpeedProfile {
 public:
-  SpeedProfile(const TrackSettings& settings, Random& random, Random& backing)
+  SpeedProfile(const TrackSettings& settings, Random& random, Random& backing, Random& spinning)
       : mean_(settings.speed > 0 ? settings.speed : random.uniform(0.4, 1.6)),
         variation_(random.uniform(0.1, 0.45)),
         waves_(random, 5, 16),
@@ -52,28 +52,38 @@ public:
     const bool stops = settings.seconds > 12 && random.chance(0.25);
     const double at = random.uniform(0.4, 0.8) * settings.seconds;
     if (stops && !settings.reverse) stop_ = at;
+    if (settings.turns) {
+      stop_ = spinning.uniform(0.3, 0.6) * settings.seconds;
+      stopped_ = std::min(spinning.uniform(4, 8), settings.seconds / 2);
+      spin_ = spinning.uniform(0.3, 0.8) * (spinning.chance(0.5) ? 1 : -1);
+    }
     if (!settings.reverse) return;
     backs_ = backing.uniform(0.3, 0.5) * settings.seconds;
     forwards_ = backs_ + std::min(backing.uniform(3, 6), settings.seconds / 3);
   }
 
   double operator()(double t) const {
-    constexpr double kBraking = 1.2;  // seconds
-    constexpr double kStopped = 1.0;
     const double wanted = std::clamp(mean_ * (1 + variation_ * waves_(t)), 0.3, 2.0);
-    const double away = std::abs(t - stop_) - kStopped / 2;
+    const double away = std::abs(t - stop_) - stopped_ / 2;
     const double going = std::min(smoother((t - stands_) / drives_off_), smoother(away / kBraking));
     if (t < backs_ - kBraking || t > forwards_ + kBraking) return wanted * going;
     const double turned = std::min(std::abs(t - backs_), std::abs(t - forwards_));
     const double direction = t > backs_ && t < forwards_ ? -0.6 : 1;
     return direction * wanted * std::min(going, smoother(turned / kBraking));
   }
+  /// Of turning on the spot, rad/s.
+  double spin(double t) const {
+    const double within = stopped_ / 2 - std::abs(t - stop_);
+    return spin_ * smoother(within / kBraking);
+  }
 
 private:
+  static constexpr double kBraking = 1.2;  // seconds
   double mean_, variation_;
   Waves waves_;
   double stands_, drives_off_;
   double stop_ = -1e9, backs_ = -1e9, forwards_ = -1e9;
+  double stopped_ = 1, spin_ = 0;
 };
 
 }  // namespace
@@ -83,7 +93,8 @@ std::vector<TrackPoint> draw_track(const TrackSettings& settings, std::uint64_t 
   constexpr double kMostTurning = 0.6;  // rad/s
   Random random(seed, 0x7AC4);
   Random backing(seed, 0x7AC6);
-  const SpeedProfile speed_at(settings, random, backing);
+  Random spinning(seed, 0x7AC7);
+  const SpeedProfile speed_at(settings, random, backing, spinning);
   const Waves bends(random, 4, 16);
   const double sharpest = random.uniform(0.1, 0.4);
   const auto points = static_cast<std::size_t>(std::ceil(settings.seconds / kTrackStep)) + 1;
@@ -105,7 +116,8 @@ std::vector<TrackPoint> draw_track(const TrackSettings& settings, std::uint64_t 
     curvature += (std::clamp(wanted, -most, most) - curvature) * kTrackStep / 0.5;
     const double moved = here.speed * kTrackStep;
     driven += moved;
-    track[i + 1].yaw = here.yaw + moved * curvature;
+    const double spun = speed_at.spin(static_cast<double>(i) * kTrackStep) * kTrackStep;
+    track[i + 1].yaw = here.yaw + moved * curvature + spun;
     const double heading = here.yaw + moved * curvature / 2;
     track[i + 1].position =
         here.position + moved * Eigen::Vector2d(std::cos(heading), std::sin(heading));

@@ -1,18 +1,17 @@
 #pragma once
 
-#include <filesystem>
+#include <span>
 #include <vector>
 
 #include "scoring/truth.hpp"
-#include "scree/core/result.hpp"
+#include "simulator/movers.hpp"
 #include "simulator/terrain.hpp"
 
 namespace scree {
 
-/// The rocks and holes of a terrain, in its frame, with the names of their shapes.
-std::vector<TrueObstacle> true_obstacles(const Terrain& terrain);
-
-/// Writes truth.json with the terrain's obstacles in place of those of `truth`.
-Result<void> write_truth(const std::filesystem::path& file, const Terrain& terrain, Truth truth);
+/// The rocks and holes of a terrain and what moves on it, in its frame, with the names of their
+/// shapes.
+std::vector<TrueObstacle> true_obstacles(const Terrain& terrain,
+                                         std::span<const Mover> movers = {});
 
 }  // namespace scree

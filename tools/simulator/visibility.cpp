@@ -3,9 +3,22 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 namespace scree {
 namespace {
+
+constexpr double kAhead = 0.5;  // metres: less is no longer asked for
+
+/// From base, in the plane: how far away, and how far ahead.
+struct Away {
+  double far, ahead;
+  Away(const Pose& base, const Eigen::Vector2d& place) {
+    const Eigen::Vector2d to = place - base.translation.head<2>();
+    far = to.norm();
+    ahead = to.dot((base.rotation * Eigen::Vector3d::UnitX()).head<2>());
+  }
+};
 
 /// Of how many parts a feature must be known.
 std::ptrdiff_t least_parts(const TerrainFeature& feature) {
@@ -31,7 +44,7 @@ void Visibility::end_sweep() {
     hits.seen |= hits.shots >= kLeastShots && std::popcount(hits.lasers) >= kLeastLasers;
     hits.all_shots += hits.shots;
     hits.sweeps += hits.shots > 0 ? 1 : 0;
-    hits.shots = 0;
+    hits.last_shots = std::exchange(hits.shots, 0);
     hits.lasers = 0;
   }
 }
@@ -69,12 +82,9 @@ bool Visibility::is_known(const TerrainFeature& feature) const {
 bool Visibility::is_due(const TerrainFeature& feature, const Pose& base) const {
   constexpr double kFarthest = 10;
   constexpr double kFarthestEdge = 5;
-  constexpr double kAhead = 0.5;
-  const Eigen::Vector3d forward = base.rotation * Eigen::Vector3d::UnitX();
   const auto is_where_asked = [&](const Eigen::Vector2d& place) {
-    const Eigen::Vector2d to = place - base.translation.head<2>();
-    return to.norm() < (feature.is_edge ? kFarthestEdge : kFarthest) &&
-           to.dot(forward.head<2>()) > kAhead;
+    const Away away(base, place);
+    return away.far < (feature.is_edge ? kFarthestEdge : kFarthest) && away.ahead > kAhead;
   };
   if (!feature.is_long()) return is_known(feature) && is_where_asked(feature.center.head<2>());
   constexpr int kLeastShots = 20;
@@ -88,12 +98,25 @@ bool Visibility::is_due(const TerrainFeature& feature, const Pose& base) const {
   return due >= least_parts(feature);
 }
 
-Visibility::Sight Visibility::asked_for(const Pose& base) const {
+bool Visibility::is_due(const Mover& mover, int shots, const Pose& base, std::int64_t t_ns) const {
+  constexpr double kFarthest = 8;
+  constexpr int kLeastShots = 15;
+  const Away away(base, place_at(mover.track, t_ns).position);
+  return shots >= kLeastShots && away.far < kFarthest && away.ahead > kAhead;
+}
+
+Visibility::Sight Visibility::asked_for(const Pose& base, std::int64_t t_ns) const {
   Sight sight;
   for (const TerrainFeature& feature : terrain_.features()) {
     if (!feature.kind) continue;
     const bool asked = !feature.is_small && is_due(feature, base);
     (asked ? sight.ids : sight.ignore).push_back(feature.id);
+  }
+  int id = static_cast<int>(terrain_.features().size());
+  std::size_t part = terrain_.parts().size();
+  for (const Mover& mover : movers_) {
+    const bool asked = is_due(mover, hits_[part++].last_shots, base, t_ns);
+    (asked ? sight.ids : sight.ignore).push_back(++id);
   }
   return sight;
 }

@@ -18,12 +18,17 @@ namespace scree {
 /// obstacle lies now where a planner asks: its centre within 10 m of `base` and more than 0.5 m
 /// ahead of it. Stones and dents are never asked for.
 ///
+/// A mover is asked for while its middle is within 8 m of `base` and more than 0.5 m ahead of it
+/// and the last sweep had 15 shots on it.
+///
 /// Of a long obstacle two of its parts, a metre each, are enough: 20 shots in three sweeps on each,
 /// and both lie where a planner asks. Those of an edge, where the ground ends, are asked for within
 /// 5 m only, and shots on the last half metre of the ground before it count too.
 class Visibility {
 public:
-  explicit Visibility(const Terrain& terrain) : terrain_(terrain), hits_(terrain.parts().size()) {}
+  /// Keeps references to terrain and movers.
+  explicit Visibility(const Terrain& terrain, std::span<const Mover> movers = {})
+      : terrain_(terrain), movers_(movers), hits_(terrain.parts().size() + movers.size()) {}
 
   /// Counts shots in the order of firing. @pre the first is of laser 0
   void add(std::span<const SimulatedShot> shots);
@@ -36,12 +41,14 @@ public:
   struct Sight {
     std::vector<int> ids, ignore;  ///< asked for, and all the others
   };
-  /// What a robot at this pose is asked for after the sweeps so far.
-  Sight asked_for(const Pose& base) const;
+  /// What a robot at this pose is asked for after the sweeps so far. Movers have the ids after
+  /// those of the features.
+  Sight asked_for(const Pose& base, std::int64_t t_ns = 0) const;
 
 private:
   struct Hits {
     int shots = 0;        ///< of this sweep
+    int last_shots = 0;   ///< of the last one
     unsigned lasers = 0;  ///< one bit each
     bool seen = false;
     int all_shots = 0, sweeps = 0;
@@ -52,7 +59,10 @@ private:
   /// Whether enough of it is known and lies where a planner asks.
   bool is_due(const TerrainFeature& feature, const Pose& base) const;
 
+  bool is_due(const Mover& mover, int shots, const Pose& base, std::int64_t t_ns) const;
+
   const Terrain& terrain_;
+  std::span<const Mover> movers_;
   std::vector<Hits> hits_;  // of each part
 };
 

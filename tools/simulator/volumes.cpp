@@ -123,6 +123,12 @@ Eigen::Vector3d Volume::reach() const {
   return axes.cwiseAbs() * half;
 }
 
+std::optional<double> Volume::range_to(const Eigen::Vector3d& origin,
+                                       const Eigen::Vector3d& direction) const {
+  const auto inside = chord(*this, origin, direction);
+  return inside && inside->from >= 0 ? std::optional(inside->from) : std::nullopt;
+}
+
 Eigen::Vector3d Volume::normal(const Eigen::Vector3d& at) const {
   const Eigen::Vector3d own = (axes.transpose() * (at - center)).cwiseQuotient(half);
   Eigen::Vector3d out = own.cwiseQuotient(half);

@@ -30,6 +30,10 @@ struct Volume {
   double light_along(int axis) const;
   /// Half of its extent along the world's axes, metres.
   Eigen::Vector3d reach() const;
+  /// How far a beam goes until it enters it, metres; none where it does not, or begins inside.
+  /// @pre direction has length 1
+  std::optional<double> range_to(const Eigen::Vector3d& origin,
+                                 const Eigen::Vector3d& direction) const;
   /// Out of its surface, of length 1. @param at on its surface
   Eigen::Vector3d normal(const Eigen::Vector3d& at) const;
 

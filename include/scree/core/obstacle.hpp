@@ -35,7 +35,7 @@ constexpr const char* name(Evidence evidence) {
   return kEvidenceNames[static_cast<std::size_t>(evidence)];
 }
 
-/// Something that a wheel must not meet: a rock (positive) or a hole (negative).
+/// Something that a wheel must not meet: a rock or a person (positive), or a hole (negative).
 struct Obstacle {
   std::int64_t id = 0;
   ObstacleKind kind = ObstacleKind::positive;
@@ -44,6 +44,7 @@ struct Obstacle {
   Eigen::Vector3d extent = Eigen::Vector3d::Zero();  ///< length, width, height of the box, metres
   double yaw = 0;     ///< of the box's length about z, radians, in (-pi/2, pi/2]
   double height = 0;  ///< above the surrounding ground; below zero: depth, metres
+  Eigen::Vector2d velocity = Eigen::Vector2d::Zero();  ///< x, y, m/s; zero: it stands
   std::uint32_t points = 0;
   Evidence evidence = Evidence::none;
   ConvexPolygon footprint;  ///< around its points, seen from above; empty: the box stands for it
@@ -64,10 +65,12 @@ inline ConvexPolygon outline_of(const Obstacle& obstacle) {
   return box;
 }
 
-/// Brings centre and footprint from a child frame into its parent, the footprint at the height of
-/// the centre. The yaw stays.
+/// Brings centre, velocity and footprint from a child frame into its parent, the footprint at the
+/// height of the centre. The yaw stays.
 inline void move_into_parent(const Pose& child, Obstacle& obstacle) {
   const double z = obstacle.center.z();
+  const Eigen::Vector2d velocity = obstacle.velocity;
+  obstacle.velocity = (child.rotation * Eigen::Vector3d(velocity.x(), velocity.y(), 0)).head<2>();
   for (Eigen::Vector2d& corner : obstacle.footprint) {
     corner = (child * Eigen::Vector3d(corner.x(), corner.y(), z)).head<2>();
   }

@@ -38,6 +38,10 @@ Obstacle obstacle_of(const JsonField& field) {
   if (obstacle.extent.minCoeff() < 0) field["extent"].refuse("a box has no negative length");
   obstacle.yaw = field["yaw"].number();
   obstacle.height = field["height"].number();
+  if (field.has("velocity")) {
+    const auto velocity = field["velocity"].items(2);
+    obstacle.velocity = {velocity[0].number(), velocity[1].number()};
+  }
   obstacle.points = static_cast<std::uint32_t>(
       field["points"].integer(0, std::numeric_limits<std::uint32_t>::max()));
   if (field.has("evidence")) obstacle.evidence = evidence_of(field["evidence"]);

@@ -30,6 +30,15 @@ std::optional<double> f1_of(const Score& score) {
              : std::optional(score.f1());
 }
 
+std::optional<double> share_found(const MovingScore& moving) {
+  if (moving.asked == 0) return std::nullopt;
+  return static_cast<double>(moving.found) / static_cast<double>(moving.asked);
+}
+
+double greatest(const std::vector<double>& values) {
+  return values.empty() ? 0 : std::ranges::max(values);
+}
+
 std::string shown(std::optional<double> share) {
   return share ? fmt::format("{:.3f}", *share) : "-";
 }
@@ -88,6 +97,22 @@ std::string warning_table(const ScoringResult& result) {
          warning_row("negative", result.negative_warning);
 }
 
+std::string moving_table(const ScoringResult& result) {
+  const MovingScore& moving = result.moving;
+  if (moving.lists == 0) return "";
+  return head("\nstanding") + row("all", result.standing.all()) +
+         row("positive", result.standing.positive) + row("negative", result.standing.negative) +
+         fmt::format("\nmoving: found in {} of {} lists that ask for one ({})\n", moving.found,
+                     moving.asked, shown(share_found(moving))) +
+         fmt::format("{} of {} reported, after {:.2f} s (median) and {:.2f} s (most)\n",
+                     moving.delays.size(), moving.obstacles, median(moving.delays),
+                     greatest(moving.delays)) +
+         fmt::format("velocity off by {:.2f} m/s (median), {:.2f} m/s (most)\n",
+                     median(moving.velocity_errors), greatest(moving.velocity_errors)) +
+         fmt::format("{} ghosts, in {} of {} lists\n", moving.ghosts, moving.lists_with_ghosts,
+                     moving.lists);
+}
+
 std::string pose_table(const ScoringResult& result) {
   if (result.pose_errors.empty()) return "";
   std::string text = fmt::format(
@@ -142,6 +167,23 @@ Json to_json(const WarningDistances& warning) {
           {"stayed", summary(warning.stayed)}};
 }
 
+Json to_json(const MovingScore& moving) {
+  const auto summary = [](const std::vector<double>& all) -> Json {
+    if (all.empty()) return {{"median", nullptr}, {"most", nullptr}};
+    return {{"median", median(all)}, {"most", std::ranges::max(all)}};
+  };
+  return {{"asked", moving.asked},
+          {"found", moving.found},
+          {"recall", to_json(share_found(moving))},
+          {"obstacles", moving.obstacles},
+          {"reported", moving.delays.size()},
+          {"delay_s", summary(moving.delays)},
+          {"velocity_error", summary(moving.velocity_errors)},
+          {"lists", moving.lists},
+          {"ghosts", moving.ghosts},
+          {"lists_with_ghosts", moving.lists_with_ghosts}};
+}
+
 Json to_json(const PoseError& error) {
   return {{"way", error.way},
           {"seconds", error.seconds},
@@ -190,7 +232,7 @@ std::string score_table(const ScoringResult& result) {
     text += fmt::format("{:<22}{:>7}{:>7}{:>7}{:>19}\n", shape, score.true_positives, "",
                         score.false_negatives, shown(recall_of(score)));
   }
-  return text + warning_table(result) + pose_table(result);
+  return text + moving_table(result) + warning_table(result) + pose_table(result);
 }
 
 std::string score_json(const ScoringResult& result) {
@@ -203,6 +245,10 @@ std::string score_json(const ScoringResult& result) {
             {"runs_not_covered", result.runs_not_covered},
             {"counts", result.counts()}};
   json.update(to_json(result.scores));
+  if (result.moving.lists > 0) {
+    json["standing"] = to_json(result.standing);
+    json["moving"] = to_json(result.moving);
+  }
   json["range"] = Json::array();
   for (const auto& [band, scores] : result.by_range) {
     const double from = band * ScoringResult::kRangeBand;

@@ -8,7 +8,7 @@ namespace scree::cli {
 
 void Pairs::add(const CloudWorld& world, const Comparison& comparison) {
   std::map<int, bool> is_right;
-  for (const auto& asked : comparison.asked) is_right[asked.obstacle->id] = asked.is_right;
+  for (const auto& asked : comparison.asked) is_right[asked.obstacle->id] = asked.is_right();
   const auto& features = world.terrain.features();
   for (const TerrainFeature& feature : features) {
     const auto one = is_right.find(feature.id);

@@ -22,13 +22,14 @@ void draw(PanelPage& page, int column, const Detector& detector, const CloudWorl
   });
   for (const auto& asked : comparison.asked) {
     const TrueObstacle& obstacle = *asked.obstacle;
-    view.outline(obstacle.footprint, asked.is_right ? kGreen : kWrong, asked.is_right ? 2 : 3.5);
+    view.outline(obstacle.footprint, asked.is_right() ? kGreen : kWrong,
+                 asked.is_right() ? 2 : 3.5);
   }
   for (const Obstacle& obstacle : list.obstacles) {
     view.box(obstacle, obstacle.kind == ObstacleKind::positive ? kBlue : kRed, 2);
   }
   for (const auto& asked : comparison.asked) {
-    if (asked.is_right) continue;
+    if (asked.is_right()) continue;
     const TrueObstacle& obstacle = *asked.obstacle;
     const char* what = obstacle.kind == ObstacleKind::positive ? "rock" : "hole";
     view.label(obstacle.center.x(), obstacle.center.y(),
@@ -73,7 +74,7 @@ void study_result(const StudyTask& task) {
     table += fmt::format("{},{},{},{:.2f},{:.2f},{:.2f}", obstacle.id, name(obstacle.kind),
                          obstacle.shape, obstacle.height, obstacle.center.x(), obstacle.center.y());
     for (const Comparison& each : comparisons)
-      table += each.asked[i].is_right ? ",right" : ",missed";
+      table += each.asked[i].is_right() ? ",right" : ",missed";
     table += '\n';
   }
   page.legend(kBlue, "found as positive");
