@@ -49,6 +49,18 @@ void Tracker::update(std::int64_t stamp_ns, const Eigen::Vector3d& robot,
   list_near(robot, obstacles);
 }
 
+void Tracker::remove_if(const std::function<bool(const Obstacle&)>& has_left) {
+  const auto last = std::remove_if(tracks_.begin(), tracks_.end(),
+                                   [&](const Track& track) { return has_left(track.obstacle); });
+  tracks_.resize(static_cast<std::size_t>(last - tracks_.begin()));
+}
+
+void Tracker::rename(std::int64_t id, std::int64_t new_id) {
+  for (Track& track : tracks_) {
+    if (track.obstacle.id == id) track.obstacle.id = new_id;
+  }
+}
+
 void Tracker::update_matched(std::int64_t stamp_ns, std::span<const Obstacle> found) {
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (track_of_[i] < 0) continue;
@@ -199,10 +211,11 @@ void Tracker::classify() {
     const Prediction prediction =
         network_ ? (*network_)(track.features)
                  : Prediction{track.features[track_positive], track.features[track_negative]};
+    const bool is_positive = track.obstacle.height > 0;
     const float most_fall = track.is_seen_empty ? kMostFallEmpty : kMostFall;
     const float least = track.is_published ? track.confidence - most_fall : 0;
-    track.confidence = std::max(prediction.confidence(), least);
-    track.obstacle.kind = prediction.kind();
+    track.confidence = std::max(is_positive ? prediction.positive : prediction.negative, least);
+    track.obstacle.kind = is_positive ? ObstacleKind::positive : ObstacleKind::negative;
   }
 }
 

@@ -18,6 +18,7 @@ Mapper::Mapper(const Settings& settings)
     : lidar_(settings.lidar),
       registers_(settings.map.registration),
       surfel_reach_(settings.map.registration_reach),
+      search_reach_(settings.map.search_reach),
       dead_reckoning_(settings.imu.mount().rotation),
       slip_detector_(settings.imu.mount().rotation, settings.imu.translation,
                      settings.encoder.max_speed),
@@ -25,6 +26,7 @@ Mapper::Mapper(const Settings& settings)
       levelling_(settings.imu.translation),
       registration_(static_cast<std::size_t>(settings.memory.sweep_points)),
       surfels_(kSurfel),
+      moving_(static_cast<std::size_t>(settings.memory.sweep_points)),
       map_(settings.map, static_cast<std::size_t>(settings.memory.map_voxels)) {}
 
 void Mapper::add(const Sweep& sweep, const SyncBuffer& sensors, StageTimer& timer) {
@@ -47,9 +49,11 @@ void Mapper::add(const Sweep& sweep, const SyncBuffer& sensors, StageTimer& time
   const Eigen::Quaterniond predicted = pose().rotation;
   outcome_ = {};
   if (registers_) {
-    register_sweep();
+    outcome_ = registration_.align(sweep_, surfels_, filter_);
     timer.done(Stage::registration);
   }
+  moving_.find(sweep_, pose(), map_.free_space(), static_cast<float>(search_reach_));
+  if (registers_) add_surfels();
   extrapolate_motion(before);
   levelling_.advance(sensors, step_, pose());
   update_attitude_error(predicted, was_silent);
@@ -67,14 +71,13 @@ void Mapper::detect_slip(const SyncBuffer& sensors, std::int64_t end_ns) {
   }
 }
 
-void Mapper::register_sweep() {
-  outcome_ = registration_.align(sweep_, surfels_, filter_);
+void Mapper::add_surfels() {
   const Eigen::Matrix3f rotation = pose().rotation.toRotationMatrix().cast<float>();
   const Eigen::Vector3f translation = pose().translation.cast<float>();
   const auto reach = static_cast<float>(surfel_reach_);
   for (std::size_t i = 0; i < sweep_.points.size(); ++i) {
     const Eigen::Vector3f in_base(sweep_.points.x[i], sweep_.points.y[i], sweep_.points.z[i]);
-    if (in_base.squaredNorm() > reach * reach) continue;
+    if (in_base.squaredNorm() > reach * reach || sweep_.is_moving[i] != 0) continue;
     surfels_.add(rotation * in_base + translation);
   }
 }

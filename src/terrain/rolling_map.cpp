@@ -1,5 +1,6 @@
 #include "scree/terrain/rolling_map.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -58,6 +59,7 @@ void RollingMap::add(const DeskewedSweep& sweep, const Pose& pose, std::int64_t 
   trace_rays(sweep, rotation, translation, reach);
   add_passing_beams(sweep, rotation, translation);
   prune(pose);
+  robot_ = translation;
   extract_cloud(translation);
 }
 
@@ -102,12 +104,15 @@ void RollingMap::add_points(const DeskewedSweep& sweep, const Eigen::Matrix3f& r
     const Eigen::Vector3f in_base(sweep.points.x[i], sweep.points.y[i], sweep.points.z[i]);
     if (in_base.squaredNorm() > reach * reach) continue;
     const Eigen::Vector3f point = rotation * in_base + translation;
+    if (in_base.squaredNorm() <= search_reach * search_reach) {
+      free_space_.add_hit(point + origin, sweep_);
+    }
+    if (sweep.is_moving[i] != 0) continue;
     MapVoxel* const voxel = voxels_.find_or_add(key_of(point));
     if (voxel == nullptr) {
       ++dropped_;
       continue;
     }
-    if (in_base.squaredNorm() <= search_reach * search_reach) free_space_.add_hit(point + origin);
     add_hit(*voxel, point, sweep, i);
     voxel->seen_from = rotation * sweep.origins[i] + translation;
   }
@@ -222,6 +227,51 @@ Occupancy RollingMap::occupancy_at(const Eigen::Vector3d& point) const {
   const std::uint32_t last_miss = free_space_.last_miss(point.cast<float>());
   const bool is_free = last_miss != 0 && sweep_ - last_miss < kRecent;
   return is_free ? Occupancy::free : Occupancy::unknown;
+}
+
+bool RollingMap::is_seen_through(const Eigen::Vector3d& point) const {
+  return free_space_.is_seen_through(point.cast<float>(), sweep_);
+}
+
+/// Whether beams go through nearly all of a box, from knee height up to shortly below its top.
+bool RollingMap::has_left(const Obstacle& obstacle) const {
+  constexpr double kStep = FreeSpace::kCell, kKnee = 0.25, kTop = 0.15;  // metres
+  constexpr int kFewest = 4, kMostThere = 5;  // places gone through, and how many for each one left
+  const Eigen::Rotation2Dd turn(obstacle.yaw);
+  const Eigen::Vector3d half = obstacle.extent / 2;
+  int there = 0, gone = 0;
+  for (double z = kKnee - half.z(); z <= half.z() - kTop; z += kStep) {
+    for (double along = -half.x(); along <= half.x(); along += kStep) {
+      for (double across = -half.y(); across <= half.y(); across += kStep) {
+        const Eigen::Vector2d at = turn * Eigen::Vector2d(along, across);
+        const Eigen::Vector3d place = obstacle.center + Eigen::Vector3d(at.x(), at.y(), z);
+        const auto presence = free_space_.presence(place.cast<float>(), sweep_);
+        there += presence == FreeSpace::Presence::there ? 1 : 0;
+        gone += presence == FreeSpace::Presence::gone ? 1 : 0;
+      }
+    }
+  }
+  return gone >= kFewest && kMostThere * there <= gone;
+}
+
+bool RollingMap::remove_left(const Obstacle& obstacle) {
+  constexpr float kMargin = 0.2F, kFloor = 0.05F;  // metres
+  if (!has_left(obstacle)) return false;
+  const Eigen::Vector2f middle = (obstacle.center - origin_).head<2>().cast<float>();
+  const Eigen::Rotation2Df turn(static_cast<float>(-obstacle.yaw));
+  const Eigen::Vector2f half = obstacle.extent.head<2>().cast<float>() / 2;
+  const auto floor =
+      static_cast<float>(obstacle.center.z() - obstacle.extent.z() / 2 - origin_.z());
+  const auto is_inside = [&](const Eigen::Vector3f& point) {
+    const Eigen::Vector2f at = turn * (point.head<2>() - middle);
+    return point.z() > floor + kFloor && std::abs(at.x()) < half.x() + kMargin &&
+           std::abs(at.y()) < half.y() + kMargin;
+  };
+  for (std::size_t i = voxels_.size(); i-- > 0;) {
+    if (is_inside(voxels_[i].mean)) voxels_.erase(i);
+  }
+  extract_cloud(robot_);
+  return true;
 }
 
 /// Removes what is too far off, what has moved away, what is too old, what was never confirmed.

@@ -185,7 +185,7 @@ private:
 
   /// Grass and stones are walked over.
   bool has_room(const Eigen::Vector2d& at, const Mover& mover) const {
-    constexpr double kGap = 0.15, kFar = 10;  // metres; beyond the radius of what is not long
+    constexpr double kGap = 0.5, kFar = 10;  // metres; beyond the radius of what is not long
     if (!terrain_.covers(at.x(), at.y())) return false;
     const double reach = mover.radius + kGap, ground = terrain_.height(at.x(), at.y());
     for (const TerrainFeature& feature : terrain_.features()) {

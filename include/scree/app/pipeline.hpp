@@ -11,7 +11,9 @@
 #include "scree/core/stage_times.hpp"
 #include "scree/core/sweep.hpp"
 #include "scree/detect/detector.hpp"
+#include "scree/detect/enclosing_polygon.hpp"
 #include "scree/detect/grid_maker.hpp"
+#include "scree/detect/moving_tracker.hpp"
 #include "scree/detect/tracker.hpp"
 #include "scree/sync/sync_buffer.hpp"
 #include "scree/terrain/mapper.hpp"
@@ -65,6 +67,10 @@ public:
 
 private:
   void detect_in_map();
+  void find_moving();
+  void hand_over_standing();
+  Obstacle moving_obstacle(std::span<const std::uint32_t> members);
+  float ground_at(const Eigen::Vector3d& place) const;
   void detect_in_sweep(const Sweep& sweep);
 
   LidarSettings lidar_;
@@ -72,6 +78,10 @@ private:
   std::unique_ptr<Mapper> mapper_;
   Detector map_detector_, sweep_detector_;
   Tracker tracker_, sweep_tracker_;
+  MovingTracker moving_tracker_;
+  EnclosingPolygons polygons_;
+  PointCloud moving_points_;
+  FixedVector<std::uint32_t> order_;
   SweepTrajectory still_;
   DeskewedSweep sweep_;  // of a robot that stands
   FixedVector<Obstacle> found_;

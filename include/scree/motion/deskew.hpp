@@ -18,7 +18,8 @@ struct DeskewedSweep {
   FixedVector<Eigen::Vector3f> origins;   ///< the lidar's origin at each point's time, same frame
   FixedVector<float> scatter;             ///< of each point, see RangeScatter; metres
   FixedVector<std::uint8_t> is_isolated;  ///< whether it ends alone, see RangeScatter
-  FixedVector<EmptyBeam> empty;           ///< same frame
+  FixedVector<std::uint8_t> is_moving;  ///< whether it is on something that moves, see MovingPoints
+  FixedVector<EmptyBeam> empty;         ///< same frame
   std::size_t dropped = 0;
 
   explicit DeskewedSweep(std::size_t capacity)
@@ -26,6 +27,7 @@ struct DeskewedSweep {
         origins(capacity),
         scatter(capacity),
         is_isolated(capacity),
+        is_moving(capacity),
         empty(capacity) {}
 
   void clear() {
@@ -33,6 +35,7 @@ struct DeskewedSweep {
     origins.clear();
     scatter.clear();
     is_isolated.clear();
+    is_moving.clear();
     empty.clear();
     dropped = 0;
   }

@@ -11,6 +11,7 @@
 #include "scree/motion/pose_filter.hpp"
 #include "scree/motion/slip_detector.hpp"
 #include "scree/sync/sync_buffer.hpp"
+#include "scree/terrain/moving_points.hpp"
 #include "scree/terrain/registration.hpp"
 #include "scree/terrain/rolling_map.hpp"
 #include "scree/terrain/surfel_map.hpp"
@@ -39,24 +40,27 @@ public:
   const Pose& to_odom() const { return levelling_.to_odom(); }
   const PoseFilter& filter() const { return filter_; }
   const RollingMap& map() const { return map_; }
+  RollingMap& map() { return map_; }
   const MotionStep& step() const { return step_; }
   const Registration::Outcome& registration() const { return outcome_; }
   /// Whether the map began anew with the last sweep, because its frame was found wrong.
   bool was_reset() const { return was_reset_; }
   /// Sweeps during which the wheel slipped.
   std::uint64_t slips() const { return slips_; }
+  /// What moves in the last sweep.
+  const MovingPoints& moving() const { return moving_; }
   /// The last sweep in `base` at its end.
   const DeskewedSweep& sweep() const { return sweep_; }
 
 private:
   void detect_slip(const SyncBuffer& sensors, std::int64_t end_ns);
-  void register_sweep();
+  void add_surfels();
   void update_attitude_error(const Eigen::Quaterniond& predicted, bool was_silent);
   void extrapolate_motion(const Pose& before);
 
   LidarSettings lidar_;
   bool registers_;
-  double surfel_reach_;
+  double surfel_reach_, search_reach_;
   DeadReckoning dead_reckoning_;
   SlipDetector slip_detector_;
   std::uint64_t slips_ = 0;
@@ -68,6 +72,7 @@ private:
   Levelling levelling_;
   Registration registration_;
   SurfelMap surfels_;
+  MovingPoints moving_;
   RollingMap map_;
   MotionStep step_;
   Registration::Outcome outcome_;

@@ -9,6 +9,7 @@
 #include "scree/config/settings.hpp"
 #include "scree/core/beam_count.hpp"
 #include "scree/core/fixed_vector.hpp"
+#include "scree/core/obstacle.hpp"
 #include "scree/core/occupancy.hpp"
 #include "scree/core/point_cloud.hpp"
 #include "scree/core/pose.hpp"
@@ -45,6 +46,17 @@ public:
   const Eigen::Vector3d& origin() const { return origin_; }
   /// What is known of a point in the map's frame, to the accuracy of FreeSpace's coarse cells.
   Occupancy occupancy_at(const Eigen::Vector3d& point) const;
+  /// Whether a beam of the last two sweeps went through the coarse cell of a point in the map's
+  /// frame, and none ended there.
+  bool is_seen_through(const Eigen::Vector3d& point) const;
+
+  /// Removes what was seen in an obstacle's box when it has left: beams go through nearly
+  /// everywhere in it. To be called after a sweep was added; the cloud is without it from then on.
+  /// @param obstacle one that stands up, in the map's frame
+  /// @return whether it has left
+  bool remove_left(const Obstacle& obstacle);
+  /// In the map's frame.
+  const FreeSpace& free_space() const { return free_space_; }
 
   std::size_t voxels() const { return voxels_.size(); }
   /// Points that found no room.
@@ -65,6 +77,7 @@ private:
                          const Eigen::Vector3f& translation);
   void add_passing_beam(const Eigen::Vector3f& origin, const Eigen::Vector3f& beam);
   void prune(const Pose& pose);
+  bool has_left(const Obstacle& obstacle) const;
   bool confirm(MapVoxel& voxel) const;
   bool has_confirmation(const MapVoxel& voxel) const;
   bool is_dust(const MapVoxel& voxel) const;
@@ -73,6 +86,7 @@ private:
   MapSettings settings_;
   float inverse_;  // voxels a metre
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3f robot_ = Eigen::Vector3f::Zero();  // from the origin, after the last sweep
   VoxelHashMap voxels_;
   FreeSpace free_space_;
   PointCloud cloud_;
