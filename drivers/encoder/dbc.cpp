@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "dbc_text.hpp"
 #include "scree/config/near_names.hpp"
+#include "scree/core/read_file.hpp"
 
 namespace scree::encoder {
 namespace {
@@ -48,6 +48,68 @@ std::string contradiction(const EncoderSettings& settings, std::string_view unit
   return {};
 }
 
+/// Looks at one line after another for the signal of a message.
+class SignalSearch {
+public:
+  SignalSearch(std::string_view message, std::string_view signal)
+      : message_(message), signal_(signal) {}
+
+  void take(std::string_view line, int number) {
+    if (auto begun = parse_message_line(line)) {
+      note_fault(begun->fault, number);
+      at_ = std::move(*begun);
+      if (at_.fault.empty()) messages_.push_back(at_.name);
+    } else if (auto part = parse_signal_line(line)) {
+      // After a message line that cannot be read, nobody knows whose signal it is.
+      if (at_.fault.empty() && at_.name == message_) take(*std::move(part), number);
+    } else if (const auto real = parse_float_line(line); real && found_ && real->name == signal_) {
+      const bool is_it = real->id == found_->signal.id;
+      if (is_it) found_->fault = "is a floating-point number, of which no count can be read";
+    }
+  }
+
+  Result<DbcSignal> result(const std::string& origin, int unclosed) const {
+    if (found_ && found_->fault.empty()) return found_->signal;
+    if (found_) {
+      return fail(fmt::format("{}:{}: {}.{} {}", origin, line_, message_, signal_, found_->fault));
+    }
+    if (!fault_.empty()) return fail(fmt::format("{}:{}", origin, fault_));
+    if (unclosed > 0) {
+      return fail(
+          fmt::format("{}:{}: the text in quotes that begins here has no end: write a \\ "
+                      "before its last quote as \\\\",
+                      origin, unclosed));
+    }
+    if (messages_.empty()) return fail(origin + ": holds no message, it is no DBC file");
+    if (signals_.empty()) {
+      return fail(fmt::format("{}: no message {} with signals; the nearest are {}", origin,
+                              message_, near_names(message_, messages_)));
+    }
+    return fail(fmt::format("{}: message {} has no signal {}; the nearest are {}", origin, message_,
+                            signal_, near_names(signal_, signals_)));
+  }
+
+private:
+  void take(SignalLine part, int number) {
+    signals_.push_back(part.name);
+    if (part.name != signal_ || found_) return;
+    part.signal.id = at_.id;
+    part.signal.is_extended = at_.is_extended;
+    found_ = std::move(part);
+    line_ = number;
+  }
+  void note_fault(const std::string& fault, int number) {
+    if (fault_.empty() && !fault.empty()) fault_ = fmt::format("{}: the line {}", number, fault);
+  }
+
+  std::string_view message_, signal_;
+  std::vector<std::string_view> messages_, signals_;
+  std::string fault_;  // of the first line that cannot be read
+  MessageLine at_;
+  std::optional<SignalLine> found_;
+  int line_ = 0;  // of what was found
+};
+
 }  // namespace
 
 Result<DbcSignal> find_signal(std::string_view dbc, std::string_view name,
@@ -58,34 +120,10 @@ Result<DbcSignal> find_signal(std::string_view dbc, std::string_view name,
   if (message.empty() || signal.empty()) {
     return fail(fmt::format("encoder.signal = \"{}\" must be MESSAGE.SIGNAL of {}", name, origin));
   }
-  std::vector<std::string_view> messages, signals;
-  std::optional<SignalLine> found;
-  MessageLine at;
+  SignalSearch search(message, signal);
   DbcText text(dbc);
-  for (std::string_view line; text.next(line);) {
-    if (const auto begun = parse_message_line(line)) {
-      at = *begun;
-      messages.push_back(at.name);
-    } else if (auto part = parse_signal_line(line); part && at.name == message) {
-      signals.push_back(part->name);
-      if (part->name != signal || found) continue;
-      found = std::move(part);
-      found->signal.id = at.id;
-      found->signal.is_extended = at.is_extended;
-    } else if (const auto real = parse_float_line(line); real && found && real->name == signal) {
-      const bool is_it = real->id == found->signal.id;
-      if (is_it) found->fault = "is a floating-point number, of which no count can be read";
-    }
-  }
-  if (found && found->fault.empty()) return found->signal;
-  if (found) return fail(fmt::format("{}: {} {}", origin, name, found->fault));
-  if (messages.empty()) return fail(origin + ": holds no message, it is no DBC file");
-  if (signals.empty()) {
-    return fail(fmt::format("{}: no message {} with signals; the nearest are {}", origin, message,
-                            near_names(message, messages)));
-  }
-  return fail(fmt::format("{}: message {} has no signal {}; the nearest are {}", origin, message,
-                          signal, near_names(signal, signals)));
+  for (std::string_view line; text.next(line);) search.take(line, text.number());
+  return search.result(origin, text.unclosed());
 }
 
 Result<EncoderSettings> with_dbc(const EncoderSettings& settings,
@@ -93,10 +131,10 @@ Result<EncoderSettings> with_dbc(const EncoderSettings& settings,
   if (settings.dbc.empty()) return settings;
   const auto file = find_file(settings.dbc, config_file);
   if (!file) return tl::make_unexpected(file.error());
-  std::ifstream stream(*file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream) return fail(fmt::format("cannot read {}", file->string()));
-  const auto signal = find_signal(text, settings.signal, file->string());
+  constexpr std::uintmax_t kLargestFile = 16 << 20;
+  const auto text = read_file(*file, kLargestFile);
+  if (!text) return tl::make_unexpected(text.error());
+  const auto signal = find_signal(*text, settings.signal, file->string());
   if (!signal) return tl::make_unexpected(signal.error());
   if (const auto reason = contradiction(settings, signal->unit); !reason.empty()) {
     return fail(reason);

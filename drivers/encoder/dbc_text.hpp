@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "scree/drivers/encoder/dbc.hpp"
@@ -16,9 +17,14 @@ public:
 
   /// False at the end.
   bool next(std::string_view& line);
+  /// Of the line that was given last, from 1.
+  int number() const { return number_; }
+  /// The line whose quotes are still open at the end of the text; 0 where none are.
+  int unclosed() const { return is_quoted_ ? quoted_from_ : 0; }
 
 private:
   std::string_view rest_;
+  int number_ = 0, quoted_from_ = 0;
   bool is_quoted_ = false;
 };
 
@@ -27,13 +33,15 @@ struct MessageLine {
   std::uint32_t id = 0;
   bool is_extended = false;
   std::string_view name;
+  std::string fault;  ///< what the line lacks; empty when it can be read
 };
+/// Nothing where the line is none of that kind, as below.
 std::optional<MessageLine> parse_message_line(std::string_view line);
 
 /// `SG_ WHEEL_SPEED_FL : 7|15@0+ (0.01,0) [0|250] "kph" EON`, whose message stands before it.
 struct SignalLine {
   std::string_view name;
-  std::string_view fault;  ///< why it cannot be used; empty when it can
+  std::string fault;  ///< why it cannot be used; empty when it can
   DbcSignal signal;
 };
 std::optional<SignalLine> parse_signal_line(std::string_view line);

@@ -1,11 +1,9 @@
 #include "scree/config/configuration.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <map>
 #include <optional>
 #include <set>
-#include <sstream>
 #include <vector>
 #define TOML_EXCEPTIONS 1
 #include <spdlog/fmt/fmt.h>
@@ -14,6 +12,7 @@
 #include "scree/config/keys.hpp"
 #include "scree/config/near_names.hpp"
 #include "scree/config/removed_keys.hpp"
+#include "scree/core/read_file.hpp"
 
 namespace scree {
 namespace {
@@ -42,6 +41,7 @@ public:
   /// Names the first key of the file that no setting has.
   void refuse_unknown(const toml::table& table, const std::string& prefix) {
     for (const auto& [key, node] : table) {
+      if (error_) return;
       const std::string name =
           prefix.empty() ? std::string(key.str()) : prefix + "." + key.str().data();
       const auto longer = known_.lower_bound(name + ".");
@@ -73,7 +73,7 @@ private:
       const std::string_view table = std::string_view(name).substr(0, name.rfind('.'));
       names.push_back(is_table ? table : name);
     }
-    return near_names(wanted, std::move(names), 1);
+    return near_names(wanted, names, 1);
   }
 
   void refuse(const toml::node& node, std::string_view name, std::string_view reason) {
@@ -206,9 +206,25 @@ std::optional<Contradiction> contradiction(const Settings& settings) {
   return found;
 }
 
+/// A key stands on one line, so this also bounds how long keys are and how deep `a.b.c = 1` goes:
+/// a table is destroyed by recursion, and each level takes stack.
+std::optional<Error> too_long_line(std::string_view toml, const std::string& origin) {
+  constexpr std::size_t kLongestLine = 1000;
+  for (int line = 1; !toml.empty(); ++line) {
+    const std::size_t length = std::min(toml.find('\n'), toml.size());
+    if (length > kLongestLine) {
+      return Error{fmt::format("{}:{}: the line has {} characters, {} are the most", origin, line,
+                               length, kLongestLine)};
+    }
+    toml.remove_prefix(std::min(length + 1, toml.size()));
+  }
+  return std::nullopt;
+}
+
 /// Reads one file's text over the configuration.
 std::optional<Error> read_over(std::string_view toml, const std::string& origin,
                                Configuration& configuration) {
+  if (auto mistake = too_long_line(toml, origin)) return mistake;
   try {
     const toml::table root = toml::parse(toml, origin);
     Reader reader(root, origin, configuration);
@@ -221,13 +237,10 @@ std::optional<Error> read_over(std::string_view toml, const std::string& origin,
 }
 
 std::optional<Error> read_over(const std::filesystem::path& file, Configuration& configuration) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream || std::filesystem::is_directory(file)) {
-    return Error{fmt::format("cannot read the configuration file {}", file.string())};
-  }
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return read_over(text.str(), file.string(), configuration);
+  constexpr std::uintmax_t kLargestFile = 1 << 20;
+  const auto text = read_file(file, kLargestFile);
+  if (!text) return text.error();
+  return read_over(*text, file.string(), configuration);
 }
 
 /// A key that one file sets and another one's choice of a method leaves unread.

@@ -95,7 +95,7 @@ class ServiceTest(ProgramTest):
         self.assertIn(f"{self.config}:10: stop.length", line)
         os.remove(self.config)
         self.reload()
-        self.read_until(self.daemon.stderr, "cannot read the configuration file")
+        self.read_until(self.daemon.stderr, "cannot read ")
         self.configure("[stop]\nlength = 4.5\n")
         self.reload()
         self.read_until(self.daemon.stderr, "changed are stop.length")

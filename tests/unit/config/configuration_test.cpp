@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "unit/temporary_folder.hpp"
 
@@ -63,6 +64,15 @@ TEST_F(ConfigurationTest, AFileThatAKeyNamesMustBeThere) {
               AllOf(HasSubstr("scree.toml:2: detect.map.network"), HasSubstr("mine.txt")));
   folder_.write("mine.txt", "");
   EXPECT_EQ(error_of(folder_ / "scree.toml"), "no error");
+}
+
+TEST_F(ConfigurationTest, OnlyRegularFilesOfAPlausibleSizeAreRead) {
+  EXPECT_THAT(error_of("/dev/zero"), HasSubstr("cannot read /dev/zero: it is no regular file"));
+  const auto fifo = folder_ / "fifo.toml";
+  ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
+  EXPECT_THAT(error_of(fifo), HasSubstr("fifo.toml: it is no regular file"));
+  EXPECT_THAT(error_of(folder_.path()), HasSubstr("it is a folder"));
+  EXPECT_THAT(error_of(write(std::string((1 << 20) + 1, '\n'))), HasSubstr("longer than"));
 }
 
 TEST_F(ConfigurationTest, EffectiveTextReadsBackToTheSameText) {

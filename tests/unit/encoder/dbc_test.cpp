@@ -113,6 +113,25 @@ TEST(Dbc, NamesWhatIsNearAMistypedName) {
   EXPECT_THAT(error_of("A.B", "not a file of that kind"), HasSubstr("no DBC file"));
 }
 
+TEST(Dbc, ATextThatBreaksOffNamesTheLineAndWhatItLacks) {
+  const std::string_view line = " SG_ S : 0|8@1+ (1,0) [0|0] \"m/s\"";
+  for (const auto& [length, lacks] : {std::pair{9, "a number"},
+                                      {12, "a '@'"},
+                                      {19, "a number"},
+                                      {20, "a ')'"},
+                                      {31, "a text in quotes"}}) {
+    const std::string text = "BO_ 416 M: 8 X\n\n" + std::string(line.substr(0, length));
+    EXPECT_THAT(error_of("M.S", std::string_view(text)),
+                AllOf(HasSubstr("robot.dbc:3: M.S cannot be read, it lacks "), HasSubstr(lacks)));
+  }
+  EXPECT_THAT(
+      error_of("M.S", "BO_ 1 M: 8 X\nBO_ 2 Other-Name: 8 X\n SG_ S : 0|8@1+ (1,0) [0|0] \"\""),
+      HasSubstr("robot.dbc:2: the line cannot be read, it lacks a ':'"))
+      << "its signals are not those of the message before";
+  EXPECT_THAT(error_of("M.S", "VERSION \"\"\nCM_ \"from C:\\\";\nBO_ 1 M: 8 X\n"),
+              HasSubstr("robot.dbc:2: the text in quotes that begins here has no end"));
+}
+
 TEST(Dbc, AnyBytesAreSafe) {
   std::mt19937 random(1);
   for (int round = 0; round < 2000; ++round) {

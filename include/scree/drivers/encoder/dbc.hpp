@@ -24,9 +24,9 @@ struct DbcSignal {
 };
 
 /// Finds MESSAGE.SIGNAL in a file's text. Lines that are none of BO_, SG_ and SIG_VALTYPE_ are
-/// passed over, those that are and cannot be read too. One sentence where there is no such message
-/// or signal (with the names that are nearest), where it is multiplexed or a floating-point number,
-/// or does not fit a frame. `origin` stands for the file's name in it.
+/// passed over. One sentence where there is no such message or signal (with the names that are
+/// nearest, or the first line that cannot be read), where it is multiplexed or a floating-point
+/// number, or does not fit a frame. `origin` stands for the file's name in it.
 Result<DbcSignal> find_signal(std::string_view dbc, std::string_view name,
                               const std::string& origin);
 
