@@ -94,6 +94,21 @@ TEST_F(ConfigurationTest, EffectiveTextReadsBackToTheSameText) {
   }
 }
 
+TEST_F(ConfigurationTest, StringsAreEscapedSoThatTheyReadBack) {
+  std::filesystem::create_directory(folder_ / "a\nb");
+  const auto file = folder_.write("a\nb/scree.toml",
+                                  "[imu]\ndevice = \"/dev/a\\\"b\\\\c\\u0001\"\n"
+                                  "[lcm]\nurl = \"a\\nb\\té\"\n[encoder]\ninterface = 'a\"\\'\n");
+  const auto read = read_configuration(file);
+  ASSERT_TRUE(read) << read.error().message;
+  const std::string text = effective_toml(*read, Shown::set);
+  const auto again = parse_settings(text, "again");
+  ASSERT_TRUE(again) << again.error().message << text;
+  EXPECT_EQ(again->imu.device, "/dev/a\"b\\c\x01");
+  EXPECT_EQ(again->lcm.url, "a\nb\té");
+  EXPECT_EQ(again->encoder.interface, "a\"\\");
+}
+
 TEST_F(ConfigurationTest, AProfileBesideTheFileIsReadInsteadOfTheShippedOne) {
   folder_.write("map.toml",
                 "[detect.map]\nsaddle = 0.4\nbody_height = 0.09\n[track]\nsmoothing = 0.5\n");

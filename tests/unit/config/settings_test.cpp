@@ -77,6 +77,18 @@ TEST(Settings, MistakesNameFileLineKeyAndWhatIsAccepted) {
               AllOf(HasSubstr("robot.toml:3"), HasSubstr("port")));
 }
 
+TEST(Settings, KeysAreComparedByTheirPath) {
+  EXPECT_THAT(error_of("\"lidar.port\" = 3368\n"),
+              AllOf(HasSubstr("robot.toml:1: \"lidar.port\" is not a setting"),
+                    HasSubstr("the nearest is lidar.port")));
+  EXPECT_THAT(error_of("[detect]\n\"map.leaf_size\" = 0.2\n"),
+              HasSubstr("robot.toml:2: detect.\"map.leaf_size\" is not a setting"));
+  EXPECT_THAT(error_of("[lidar]\n\"port\\u0000x\" = 3368\n"),
+              HasSubstr("robot.toml:2: lidar.\"port\\u0000x\" is not a setting"));
+  EXPECT_THAT(error_of("[lidar]\n\"\" = 1\n"), HasSubstr("lidar.\"\" is not a setting"));
+  EXPECT_EQ(error_of("[lidar]\n\"port\" = 3368\n"), "no error");
+}
+
 TEST(Settings, DepthAndLengthOfKeysAreBounded) {
   const auto times = [](std::size_t n, std::string_view text) {
     std::string all;
