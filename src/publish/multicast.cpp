@@ -15,6 +15,12 @@ namespace {
 
 constexpr std::string_view kProvider = "udpm://";
 
+std::string no_url(const std::string& url) {
+  return "the LCM url " + url +
+         " must look like udpm://239.255.76.67:7667?ttl=0, with a multicast address "
+         "(224.0.0.0 to 239.255.255.255) and a port";
+}
+
 Result<sockaddr_in> group_of(const std::string& url) {
   const std::string_view rest = std::string_view(url).substr(kProvider.size());
   const std::string network(rest.substr(0, rest.find('?')));
@@ -30,9 +36,7 @@ Result<sockaddr_in> group_of(const std::string& url) {
   }
   if (port == 0 || inet_pton(AF_INET, address.c_str(), &group.sin_addr) != 1 ||
       !IN_MULTICAST(ntohl(group.sin_addr.s_addr))) {
-    return fail("the LCM url " + url +
-                " must look like udpm://239.255.76.67:7667?ttl=0, with a multicast address "
-                "(224.0.0.0 to 239.255.255.255) and a port");
+    return fail(no_url(url));
   }
   group.sin_port = htons(port);
   return group;
@@ -40,8 +44,16 @@ Result<sockaddr_in> group_of(const std::string& url) {
 
 }  // namespace
 
+Result<void> check_lcm_url(const std::string& url) {
+  if (url.starts_with(kProvider)) return group_of(url).map([](const sockaddr_in&) {});
+  for (const std::string_view other : {"tcpq://", "mpudpm://", "memq://", "file://"}) {
+    if (url.starts_with(other)) return {};
+  }
+  return fail(no_url(url));
+}
+
 Result<void> check_multicast(const std::string& lcm_url) {
-  if (!lcm_url.starts_with(kProvider)) return {};
+  if (!lcm_url.starts_with(kProvider)) return check_lcm_url(lcm_url);
   const auto group = group_of(lcm_url);
   if (!group) return tl::make_unexpected(group.error());
 
