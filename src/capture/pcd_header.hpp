@@ -12,6 +12,9 @@
 
 namespace scree {
 
+/// Of UTF-8; editors of Windows begin a text with it.
+inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
 enum class PcdData : std::uint8_t { ascii, binary, binary_compressed };
 
 struct PcdField {
@@ -31,7 +34,7 @@ struct PcdHeader {
   std::size_t points = 0;
   std::size_t point_size = 0;  ///< bytes of one point
   PcdData data = PcdData::ascii;
-  Eigen::Vector3f viewpoint = Eigen::Vector3f::Zero();  ///< metres
+  Eigen::Vector3d viewpoint = Eigen::Vector3d::Zero();  ///< metres
   std::size_t body = 0;                                 ///< where the data begins in the file
 
   /// The first field of one of these names, whatever their case.
