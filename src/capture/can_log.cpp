@@ -7,6 +7,7 @@
 #include <limits>
 #include <numeric>
 
+#include "scree/capture/capture.hpp"
 #include "scree/core/nanoseconds.hpp"
 
 namespace scree {
@@ -113,6 +114,9 @@ Result<CanLogReader> CanLogReader::open(const std::filesystem::path& file) {
   std::error_code ignored;
   if (!reader.stream_ || std::filesystem::is_directory(file, ignored)) {
     return fail(fmt::format("cannot read {}", file.string()));
+  }
+  if (const std::string_view packer = packed_with(file); !packer.empty()) {
+    return fail(fmt::format("{}: is packed with {}: unpack it first", file.string(), packer));
   }
   return reader;
 }

@@ -85,7 +85,11 @@ std::string LidarCapture::why_nothing(const LidarStream& stream) const {
       return fmt::format("{}: none of its {} LCM messages holds a packet of the lidar", name_,
                          seen.other);
     }
-    return fmt::format("{}: no UDP packets in {} frames", name_, seen.other + seen.fragments);
+    if (seen.fragments > 0) {
+      return fmt::format("{}: all {} packets are fragments, of which the others are missing", name_,
+                         seen.fragments);
+    }
+    return fmt::format("{}: no UDP packets in {} frames", name_, seen.other);
   }
   const auto busiest = std::max_element(
       ports_.begin(), ports_.end(),
@@ -103,6 +107,7 @@ void report_capture(const LidarCapture& capture, const LidarStream& stream) {
   const auto note = [](std::string_view text) {
     if (!text.empty()) fmt::print(stderr, "scree: {}\n", text);
   };
+  if (capture.ports().empty() && !capture.broken_off().empty()) throw Failure(capture.broken_off());
   note(capture.broken_off());
   if (stream.counters().accepted == 0) throw Failure(capture.why_nothing(stream));
   note(velodyne::sentence(stream.firmware()));
