@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "scree/core/byte_order_mark.hpp"
 #include "scree/core/can_frame.hpp"
 
 namespace scree::encoder {
@@ -13,7 +14,9 @@ namespace {
 constexpr std::uint32_t kExtendedFlag = 0x80000000;
 
 bool is_name(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+  // Letters beyond ASCII are not allowed, and written.
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+         static_cast<unsigned char>(c) >= 0x80;
 }
 
 /// Reads a line piece by piece, with blanks between any two; after a piece that is not there
@@ -92,6 +95,29 @@ void set_id(MessageLine& message, std::uint32_t id) {
   message.id = id & kLargestExtendedId;
 }
 
+/// Whether a line begins as a message or a signal.
+bool is_statement(std::string_view line) {
+  const std::size_t begin = std::min(line.find_first_not_of(" \t"), line.size());
+  const std::string_view first = line.substr(begin, 4);
+  return first == "BO_ " || first == "SG_ ";
+}
+
+/// Cuts off the message or signal that follows another one on its line. @return it, or nothing
+std::string_view cut_next_statement(std::string_view& line) {
+  if (!is_statement(line)) return {};
+  bool is_quoted = false;
+  for (std::size_t i = line.find('_'); i + 4 < line.size(); ++i) {
+    if (line[i] == '"') is_quoted = !is_quoted;
+    const std::string_view word = line.substr(i + 1, 4);
+    if (is_quoted || (line[i] != ' ' && line[i] != '\t')) continue;
+    if (word != "BO_ " && word != "SG_ ") continue;
+    const std::string_view rest = line.substr(i + 1);
+    line = line.substr(0, i);
+    return rest;
+  }
+  return {};
+}
+
 bool fits_a_frame(const DbcSignal& signal) {
   constexpr int kBits = 512;
   if (signal.start_bit < 0 || signal.start_bit >= kBits) return false;
@@ -105,20 +131,34 @@ bool fits_a_frame(const DbcSignal& signal) {
 
 }  // namespace
 
+DbcText::DbcText(std::string_view text) : rest_(text) {
+  if (rest_.starts_with(kByteOrderMark)) rest_.remove_prefix(kByteOrderMark.size());
+}
+
 bool DbcText::next(std::string_view& line) {
+  if (!more_.empty()) {
+    line = more_;
+    more_ = cut_next_statement(line);
+    return true;
+  }
   while (!rest_.empty()) {
     const std::size_t length = rest_.find('\n');
     line = rest_.substr(0, length);
     rest_.remove_prefix(length == std::string_view::npos ? rest_.size() : length + 1);
     ++number_;
     const bool began_quoted = is_quoted_;
+    if (began_quoted && swallowing_from_ == 0 && is_statement(line)) {
+      swallowing_from_ = quoted_from_;
+    }
     for (std::size_t i = 0; i < line.size(); ++i) {
       if (line[i] == '\\')
         ++i;  // \" is a quote inside
       else if (line[i] == '"' && (is_quoted_ = !is_quoted_))
         quoted_from_ = number_;
     }
-    if (!began_quoted) return true;
+    if (began_quoted) continue;
+    more_ = cut_next_statement(line);
+    return true;
   }
   return false;
 }
@@ -170,16 +210,31 @@ std::optional<SignalLine> parse_signal_line(std::string_view line) {
   return result;
 }
 
-std::optional<MessageLine> parse_float_line(std::string_view line) {
+std::optional<FloatLine> parse_float_line(std::string_view line) {
   Scanner scanner(line);
   if (!is_keyword(scanner, "SIG_VALTYPE_")) return std::nullopt;
-  MessageLine message;
-  set_id(message, scanner.number<std::uint32_t>());
-  message.name = scanner.name();
+  FloatLine result;
+  set_id(result.signal, scanner.number<std::uint32_t>());
+  result.signal.name = scanner.name();
   scanner.take(':');
-  const int type = scanner.number<int>();
-  if (!scanner.is_good() || type == 0) return std::nullopt;
-  return message;
+  result.type = scanner.number<int>();
+  if (!scanner.is_good() || result.type == 0) return std::nullopt;
+  return result;
+}
+
+std::optional<LongNameLine> parse_long_name_line(std::string_view line) {
+  Scanner scanner(line);
+  if (!is_keyword(scanner, "BA_")) return std::nullopt;
+  const std::string_view attribute = scanner.quoted();
+  const bool is_signal = attribute == "SystemSignalLongSymbol";
+  if (!is_signal && attribute != "SystemMessageLongSymbol") return std::nullopt;
+  LongNameLine result;
+  if (scanner.name() != (is_signal ? "SG_" : "BO_")) return std::nullopt;
+  set_id(result.of, scanner.number<std::uint32_t>());
+  if (is_signal) result.of.name = scanner.name();
+  result.name = scanner.quoted();
+  if (!scanner.is_good()) return std::nullopt;
+  return result;
 }
 
 }  // namespace scree::encoder

@@ -8,12 +8,10 @@
 #include <string_view>
 #include <vector>
 
+#include "scree/core/byte_order_mark.hpp"
 #include "scree/core/result.hpp"
 
 namespace scree {
-
-/// Of UTF-8; editors of Windows begin a text with it.
-inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 enum class PcdData : std::uint8_t { ascii, binary, binary_compressed };
 

@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import shutil
 import struct
 import sys
 
@@ -59,6 +60,43 @@ class FieldTest(ProgramTest):
             info = self.info(capture)
             self.assertEqual((info["lost"], info["refused"]), (0, {}), capture)
         self.assertEqual(self.info("reordered_datagrams/a.pcap")["packets"], 200)
+
+    def wheel(self, name):
+        """The values of the encoder in a folder of the field."""
+        return [float(row[-1]) for row in self.decoded(SCREE, self.field(name), "encoder")]
+
+    def test_dbc_files_of_other_programs_are_read_or_named(self):
+        self.assertEqual(len(self.wheel("j1939_source_address")), 50)
+        self.assertGreater(len(self.wheel("dbc/float")), 10)
+        self.assertAlmostEqual(self.wheel("dbc/utf8name")[0], 10 / 3.6, places=4)
+        for name, words in {
+            "units3": "1 KPH is 0.277778 m/s",
+            "commentq": "wheel.dbc:9: ",
+            "dashname": "wheel.dbc:9: the line cannot be read",
+            "utf16": "save it as UTF-8",
+        }.items():
+            result = self.run_to_end(
+                SCREE, "decode", self.field(f"dbc/{name}"), "--sensor", "encoder"
+            )  # fmt: skip
+            self.assert_fails(result, words)
+
+    def test_logs_of_candump_are_read_whatever_their_form(self):
+        folder = self.field("candump_kinds")
+        counts = {}
+        for name in ("ta.log", "bom.log"):
+            config = os.path.join(folder, "enc.toml")
+            log = os.path.join(folder, name)
+            counts[name] = self.decoded(SCREE, log, "encoder", "--config", config)
+        self.assertGreater(len(counts["ta.log"]), 10)
+        self.assertEqual(counts["ta.log"], counts["bom.log"])
+
+    def test_a_log_by_another_clock_is_said_with_both_times(self):
+        log = self.field("can_log_other_clock/tz.can.log")
+        drive = os.path.join(DATA, "captures/interop")
+        self.done(SCREE, "slice", drive, self.path("part"), "--to", "3")
+        shutil.copyfile(log, self.path("part/can.log"))
+        said = self.done(SCREE, "detect", self.path("part"), "--out", self.path("l.jsonl")).stderr
+        self.assertRegex(said, "encoder's frames lie outside the lidar's time .1970-01-01 .* 2020-08-28")
 
     def test_files_are_known_by_their_content(self):
         folder = self.field("file_kinds")

@@ -7,6 +7,7 @@
 #include <map>
 #include <string>
 
+#include "common/time_span.hpp"
 #include "read/lidar_file.hpp"
 #include "scree/config/settings.hpp"
 #include "scree/drivers/velodyne/lidar_stream.hpp"
@@ -43,6 +44,7 @@ public:
   /// From the first datagram to the last.
   double seconds() const;
   std::int64_t first_ns() const { return first_ns_; }
+  TimeSpan span() const { return {first_ns_, last_ns_}; }
   /// See LidarFile.
   std::string broken_off() const { return file_.broken_off(); }
 
