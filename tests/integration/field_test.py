@@ -98,6 +98,19 @@ class FieldTest(ProgramTest):
         said = self.done(SCREE, "detect", self.path("part"), "--out", self.path("l.jsonl")).stderr
         self.assertRegex(said, "encoder's frames lie outside the lidar's time .1970-01-01 .* 2020-08-28")
 
+    def test_of_two_lidars_on_one_port_one_is_taken(self):
+        for name, words in {
+            "two_senders/two.pcap": ("192.168.1.20", "lidar.sender"),
+            "lcm_log/two_lidars.log": ("several channels", "lidar.sender"),
+        }.items():
+            info = self.info(name)
+            self.assertLess(info["rpm"], 1300, name)
+            self.assertEqual((info["lost"], info["refused"]), (0, {}), name)
+            for word in words:
+                self.assertIn(word, info["two_senders"])
+            result = self.done(SCREE, "detect", self.field(name))
+            self.assertIn("lidar.sender", result.stderr)
+
     def test_files_are_known_by_their_content(self):
         folder = self.field("file_kinds")
         for name in ("CLOUD.PCD", "cloud_without_suffix"):

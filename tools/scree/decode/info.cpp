@@ -140,6 +140,7 @@ Json describe(const LidarCapture& capture, const LidarStream& stream, const Swee
         {"truncated", frames.truncated}}},
       {"firmware", velodyne::sentence(stream.firmware())},
       {"broken_off", capture.broken_off()},
+      {"two_senders", capture.two_senders()},
   };
 }
 
@@ -182,7 +183,7 @@ void print_table(const Json& info) {
                     listed(port["sizes"], "-"), listed(port["senders"], "-")));
   }
   row("other frames", listed(info["frames"], "-"));
-  for (const char* key : {"firmware", "broken_off"}) {
+  for (const char* key : {"firmware", "broken_off", "two_senders"}) {
     if (const std::string note = info[key]; !note.empty()) row("note", note);
   }
 }

@@ -11,6 +11,7 @@
 #include "read/lidar_file.hpp"
 #include "scree/config/settings.hpp"
 #include "scree/drivers/velodyne/lidar_stream.hpp"
+#include "scree/drivers/velodyne/one_sender.hpp"
 
 namespace scree::cli {
 
@@ -48,6 +49,8 @@ public:
   /// See LidarFile.
   std::string broken_off() const { return file_.broken_off(); }
 
+  /// One sentence where several sensors send to the data port; empty where one does.
+  std::string two_senders() const;
   /// One sentence on why no packet was accepted.
   std::string why_nothing(const velodyne::LidarStream& stream) const;
 
@@ -56,6 +59,7 @@ private:
   LidarFile file_;
   LidarSettings settings_;
   std::map<std::uint16_t, PortTraffic> ports_;
+  velodyne::OneSender senders_;
   std::int64_t first_ns_ = 0, last_ns_ = 0;
   std::uint64_t datagrams_ = 0;
 };
