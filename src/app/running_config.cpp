@@ -3,6 +3,7 @@
 #include <spdlog/fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -33,7 +34,11 @@ std::optional<Error> unusable(const Configuration& configuration) {
       {"lcm.url", judged(check_lcm_url(settings.lcm.url))}};
   for (const auto& [key, reason] : reasons) {
     if (reason) {
-      return Error{fmt::format("{}: {}: {}", configuration.source_of(key).text(), key, *reason)};
+      std::string sentence =
+          fmt::format("{}: {}: {}", configuration.source_of(key).text(), key, *reason);
+      std::ranges::replace_if(
+          sentence, [](unsigned char c) { return c < ' '; }, '?');
+      return Error{std::move(sentence)};
     }
   }
   return std::nullopt;
