@@ -9,7 +9,9 @@ import struct
 import subprocess
 import sys
 
+from pcap_file import write_pcap
 from programs import ProgramTest, main
+from synthetic_capture import PACKET_NS, data_packet, frame
 
 SCREE, DATA = sys.argv[1:3]
 PAPER = os.path.join(os.path.dirname(__file__), "..", "..", "config", "paper.toml")
@@ -222,6 +224,18 @@ class DetectTest(ProgramTest):
         ]:
             result = self.run_to_end(SCREE, "detect", self.write_pcd("none.pcd", points))
             self.assert_fails(result, words)
+
+    def test_a_capture_without_a_return_was_not_looked_at(self):
+        def without_returns(number):
+            packet = bytearray(data_packet(number))
+            for block in range(0, 1200, 100):
+                packet[block + 4 : block + 100] = bytes(96)
+            return bytes(packet)
+
+        records = ((number * PACKET_NS, frame(without_returns(number), 2368)) for number in range(400))
+        write_pcap(self.path("dark.pcap"), records)
+        result = self.run_to_end(SCREE, "detect", self.path("dark.pcap"))
+        self.assert_fails(result, "dark.pcap: nothing was looked at")
 
     def test_failures_are_one_sentence_and_exit_1(self):
         garbled = self.path("garbled.pcd")
