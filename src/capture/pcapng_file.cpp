@@ -129,8 +129,8 @@ bool PcapngFile::next(PcapRecord& record) {
 }
 
 bool PcapngFile::take_packet(PcapRecord& record) {
-  constexpr std::size_t kHeader = kBlockHeader + 20, kSimpleHeader = kBlockHeader + 4;
-  const std::size_t header = type_ == kSimplePacket ? kSimpleHeader : kHeader;
+  constexpr std::size_t kFullHeader = kBlockHeader + 20, kSimpleHeader = kBlockHeader + 4;
+  const std::size_t header = type_ == kSimplePacket ? kSimpleHeader : kFullHeader;
   if (body_.size() < header) return break_off("a packet is too short");
   const std::size_t number = type_ == kSimplePacket     ? 0
                              : type_ == kEnhancedPacket ? u32(kBlockHeader)
