@@ -45,7 +45,7 @@ bool set_filters(const Descriptor& socket, const std::optional<CanId>& only) {
   if (!only) return true;
   can_filter filter{};
   filter.can_id = only->id | (only->is_extended ? CAN_EFF_FLAG : 0U);
-  filter.can_mask = CAN_EFF_FLAG | (only->is_extended ? CAN_EFF_MASK : CAN_SFF_MASK);
+  filter.can_mask = CAN_EFF_FLAG | (only->is_extended ? only->mask : CAN_SFF_MASK);
   return set_option(socket, SOL_CAN_RAW, CAN_RAW_FILTER, filter);
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <linux/can.h>
+
 #include <optional>
 #include <string>
 
@@ -10,6 +12,7 @@ namespace scree::encoder {
 struct CanId {
   std::uint32_t id;
   bool is_extended;
+  std::uint32_t mask = CAN_EFF_MASK;  ///< the bits that must agree
 };
 
 /// The real interface.

@@ -35,7 +35,8 @@ std::optional<CanFrame> frame_of(std::span<const std::uint8_t, sizeof(canfd_fram
 }  // namespace
 
 Result<CanSocket> CanSocket::open(const EncoderSettings& settings) {
-  const CanId id{static_cast<std::uint32_t>(settings.can_id), settings.has_extended_id()};
+  const CanId id{static_cast<std::uint32_t>(settings.can_id), settings.has_extended_id(),
+                 settings.id_mask()};
   return open(can_device(settings.interface, id));
 }
 

@@ -5,13 +5,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
-#include <iterator>
+#include <map>
 #include <optional>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "dbc_text.hpp"
 #include "scree/config/near_names.hpp"
+#include "scree/core/read_file.hpp"
 
 namespace scree::encoder {
 namespace {
@@ -22,8 +24,18 @@ struct Unit {
   EncoderKind kind;
   double scale;
 };
+/// As people write them: km/h, KPH, "km / h".
+std::string normal_unit(std::string_view unit) {
+  std::string normal;
+  for (const char c : unit) {
+    if (c != ' ') normal += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  }
+  return normal;
+}
+
 constexpr std::array kUnits = {
-    Unit{"m/s", EncoderKind::speed, 1},        Unit{"mm/s", EncoderKind::speed, 0.001},
+    Unit{"m/s", EncoderKind::speed, 1},        Unit{"mps", EncoderKind::speed, 1},
+    Unit{"cm/s", EncoderKind::speed, 0.01},    Unit{"mm/s", EncoderKind::speed, 0.001},
     Unit{"km/h", EncoderKind::speed, 1 / 3.6}, Unit{"kph", EncoderKind::speed, 1 / 3.6},
     Unit{"kmh", EncoderKind::speed, 1 / 3.6},  Unit{"mph", EncoderKind::speed, 0.44704},
     Unit{"m", EncoderKind::counter, 1},        Unit{"cm", EncoderKind::counter, 0.01},
@@ -31,9 +43,17 @@ constexpr std::array kUnits = {
 };
 
 /// Why settings and unit contradict each other; empty when they do not, as far as can be known.
-std::string contradiction(const EncoderSettings& settings, std::string_view unit) {
+std::string contradiction(const EncoderSettings& settings, const DbcSignal& signal) {
+  if (signal.is_float && settings.kind == EncoderKind::counter) {
+    return fmt::format(
+        "encoder.kind is counter, but {} is a floating-point number, which does not "
+        "wrap: only a speed can be one",
+        settings.signal);
+  }
+  const std::string_view unit = signal.unit;
+  const std::string normal = normal_unit(unit);
   for (const Unit& known : kUnits) {
-    if (unit != known.name) continue;
+    if (normal != known.name) continue;
     if (settings.kind != known.kind) {
       return fmt::format("encoder.kind is {}, but the unit of {} is {}", name_of(settings.kind),
                          settings.signal, unit);
@@ -48,6 +68,106 @@ std::string contradiction(const EncoderSettings& settings, std::string_view unit
   return {};
 }
 
+/// What the messages and signals with long names are called.
+class LongNames {
+public:
+  explicit LongNames(std::string_view dbc) {
+    DbcText text(dbc);
+    for (std::string_view line; text.next(line);) {
+      if (const auto found = parse_long_name_line(line)) names_[key(found->of)] = found->name;
+    }
+  }
+  std::string_view of_message(const MessageLine& message) const {
+    return of({message.id, message.is_extended, {}, {}}, message.name);
+  }
+  std::string_view of_signal(const MessageLine& message, std::string_view name) const {
+    return of({message.id, message.is_extended, name, {}}, name);
+  }
+
+private:
+  using Key = std::tuple<std::uint32_t, bool, std::string_view>;
+  static Key key(const MessageLine& of) { return {of.id, of.is_extended, of.name}; }
+  std::string_view of(const MessageLine& what, std::string_view otherwise) const {
+    const auto found = names_.find(key(what));
+    return found == names_.end() ? otherwise : found->second;
+  }
+
+  std::map<Key, std::string_view> names_;
+};
+
+/// Looks at one line after another for the signal of a message, by its long name or its short one.
+class SignalSearch {
+public:
+  SignalSearch(std::string_view dbc, std::string_view message, std::string_view signal)
+      : long_names_(dbc), message_(message), signal_(signal) {}
+
+  void take(std::string_view line, int number) {
+    if (auto begun = parse_message_line(line)) {
+      note_fault(begun->fault, number);
+      at_ = std::move(*begun);
+      if (at_.fault.empty()) messages_.push_back(long_names_.of_message(at_));
+    } else if (auto part = parse_signal_line(line)) {
+      // After a message line that cannot be read, nobody knows whose signal it is.
+      const bool is_of_it = at_.name == message_ || long_names_.of_message(at_) == message_;
+      if (at_.fault.empty() && is_of_it) take(*std::move(part), number);
+    } else if (const auto real = parse_float_line(line); real && found_) {
+      make_float(*real);
+    }
+  }
+
+  Result<DbcSignal> result(const std::string& origin, const DbcText& text) const {
+    if (found_ && found_->fault.empty()) return found_->signal;
+    if (found_) {
+      return fail(fmt::format("{}:{}: {}.{} {}", origin, line_, message_, signal_, found_->fault));
+    }
+    if (!fault_.empty()) return fail(fmt::format("{}:{}", origin, fault_));
+    if (text.is_open() || (messages_.empty() && text.quoted_from() > 0)) {
+      return fail(
+          fmt::format("{}:{}: the text in quotes that begins here has no end: write a \\ "
+                      "before its last quote as \\\\",
+                      origin, text.quoted_from()));
+    }
+    if (messages_.empty()) return fail(origin + ": holds no message, it is no DBC file");
+    if (signals_.empty()) {
+      return fail(fmt::format("{}: no message {} with signals; the nearest are {}", origin,
+                              message_, near_names(message_, messages_)));
+    }
+    return fail(fmt::format("{}: message {} has no signal {}; the nearest are {}", origin, message_,
+                            signal_, near_names(signal_, signals_)));
+  }
+
+private:
+  void take(SignalLine part, int number) {
+    const std::string_view name = long_names_.of_signal(at_, part.name);
+    signals_.push_back(name);
+    if ((part.name != signal_ && name != signal_) || found_) return;
+    part.signal.id = at_.id;
+    part.signal.is_extended = at_.is_extended;
+    found_ = std::move(part);
+    line_ = number;
+  }
+  void make_float(const FloatLine& line) {
+    DbcSignal& signal = found_->signal;
+    if (line.signal.name != found_->name || line.signal.id != signal.id) return;
+    signal.is_float = true;
+    if (signal.length != (line.type == 1 ? 32 : 64) || line.type > 2) {
+      found_->fault = fmt::format("has {} bits, and is to be a floating-point number of type {}",
+                                  signal.length, line.type);
+    }
+  }
+  void note_fault(const std::string& fault, int number) {
+    if (fault_.empty() && !fault.empty()) fault_ = fmt::format("{}: the line {}", number, fault);
+  }
+
+  LongNames long_names_;
+  std::string_view message_, signal_;
+  std::vector<std::string_view> messages_, signals_;
+  std::string fault_;  // of the first line that cannot be read
+  MessageLine at_;
+  std::optional<SignalLine> found_;
+  int line_ = 0;  // of what was found
+};
+
 }  // namespace
 
 Result<DbcSignal> find_signal(std::string_view dbc, std::string_view name,
@@ -58,34 +178,13 @@ Result<DbcSignal> find_signal(std::string_view dbc, std::string_view name,
   if (message.empty() || signal.empty()) {
     return fail(fmt::format("encoder.signal = \"{}\" must be MESSAGE.SIGNAL of {}", name, origin));
   }
-  std::vector<std::string_view> messages, signals;
-  std::optional<SignalLine> found;
-  MessageLine at;
+  if (dbc.starts_with("\xFF\xFE") || dbc.starts_with("\xFE\xFF")) {
+    return fail(origin + ":1: is text of 16 bits a character (UTF-16): save it as UTF-8");
+  }
+  SignalSearch search(dbc, message, signal);
   DbcText text(dbc);
-  for (std::string_view line; text.next(line);) {
-    if (const auto begun = parse_message_line(line)) {
-      at = *begun;
-      messages.push_back(at.name);
-    } else if (auto part = parse_signal_line(line); part && at.name == message) {
-      signals.push_back(part->name);
-      if (part->name != signal || found) continue;
-      found = std::move(part);
-      found->signal.id = at.id;
-      found->signal.is_extended = at.is_extended;
-    } else if (const auto real = parse_float_line(line); real && found && real->name == signal) {
-      const bool is_it = real->id == found->signal.id;
-      if (is_it) found->fault = "is a floating-point number, of which no count can be read";
-    }
-  }
-  if (found && found->fault.empty()) return found->signal;
-  if (found) return fail(fmt::format("{}: {} {}", origin, name, found->fault));
-  if (messages.empty()) return fail(origin + ": holds no message, it is no DBC file");
-  if (signals.empty()) {
-    return fail(fmt::format("{}: no message {} with signals; the nearest are {}", origin, message,
-                            near_names(message, messages)));
-  }
-  return fail(fmt::format("{}: message {} has no signal {}; the nearest are {}", origin, message,
-                          signal, near_names(signal, signals)));
+  for (std::string_view line; text.next(line);) search.take(line, text.number());
+  return search.result(origin, text);
 }
 
 Result<EncoderSettings> with_dbc(const EncoderSettings& settings,
@@ -93,12 +192,12 @@ Result<EncoderSettings> with_dbc(const EncoderSettings& settings,
   if (settings.dbc.empty()) return settings;
   const auto file = find_file(settings.dbc, config_file);
   if (!file) return tl::make_unexpected(file.error());
-  std::ifstream stream(*file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream) return fail(fmt::format("cannot read {}", file->string()));
-  const auto signal = find_signal(text, settings.signal, file->string());
+  constexpr std::uintmax_t kLargestFile = 16 << 20;
+  const auto text = read_file(*file, kLargestFile);
+  if (!text) return tl::make_unexpected(text.error());
+  const auto signal = find_signal(*text, settings.signal, file->string());
   if (!signal) return tl::make_unexpected(signal.error());
-  if (const auto reason = contradiction(settings, signal->unit); !reason.empty()) {
+  if (const auto reason = contradiction(settings, *signal); !reason.empty()) {
     return fail(reason);
   }
   EncoderSettings filled = settings;
@@ -110,6 +209,10 @@ Result<EncoderSettings> with_dbc(const EncoderSettings& settings,
   filled.is_signed = signal->is_signed;
   filled.factor = signal->factor;
   filled.offset = signal->offset;
+  filled.is_float = signal->is_float;
+  // What J1939's files give where they do not know the source (SAE J1939-21: the null address).
+  constexpr std::int64_t kSource = 0xFF, kNullAddress = 0xFE;
+  filled.any_source = signal->is_extended && (filled.can_id & kSource) == kNullAddress;
   return filled;
 }
 

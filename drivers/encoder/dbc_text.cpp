@@ -1,8 +1,11 @@
 #include "dbc_text.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <utility>
 
+#include "scree/core/byte_order_mark.hpp"
 #include "scree/core/can_frame.hpp"
 
 namespace scree::encoder {
@@ -11,7 +14,9 @@ namespace {
 constexpr std::uint32_t kExtendedFlag = 0x80000000;
 
 bool is_name(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+  // Letters beyond ASCII are not allowed, and written.
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+         static_cast<unsigned char>(c) >= 0x80;
 }
 
 /// Reads a line piece by piece, with blanks between any two; after a piece that is not there
@@ -20,12 +25,11 @@ class Scanner {
 public:
   explicit Scanner(std::string_view line) : rest_(line) {}
 
-  bool is_good() const { return is_good_; }
+  bool is_good() const { return missing_.empty(); }
+  std::string fault() const { return "cannot be read, it lacks " + missing_; }
 
-  void expect(std::string_view text) {
-    skip_blanks();
-    if (!rest_.starts_with(text)) return stop();
-    rest_.remove_prefix(text.size());
+  void expect(char c) {
+    if (!take(c)) stop(std::string("a '") + c + "'");
   }
   bool take(char c) {
     skip_blanks();
@@ -39,8 +43,8 @@ public:
     std::size_t length = 0;
     while (length < rest_.size() && is_name(rest_[length])) ++length;
     const std::string_view name = rest_.substr(0, length);
-    if (name.empty()) stop();
     rest_.remove_prefix(length);
+    if (name.empty()) stop("a name");
     return name;
   }
   template <class T>
@@ -49,29 +53,37 @@ public:
     if (rest_.starts_with('+')) rest_.remove_prefix(1);
     T value{};
     const auto [end, error] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), value);
-    if (error != std::errc()) stop();
-    rest_.remove_prefix(static_cast<std::size_t>(end - rest_.data()));
+    if (error != std::errc()) {
+      stop("a number");
+    } else {
+      rest_.remove_prefix(static_cast<std::size_t>(end - rest_.data()));
+    }
     return value;
   }
-  /// What stands between the next two quotes; empty where there are none.
+  /// What stands between the next two quotes.
   std::string_view quoted() {
-    const std::size_t begin = rest_.find('"');
-    if (begin == std::string_view::npos) return {};
-    rest_.remove_prefix(begin + 1);
-    return rest_.substr(0, rest_.find('"'));
+    const std::size_t begin = std::min(rest_.find('"'), rest_.size());
+    const std::size_t end = rest_.find('"', begin + 1);
+    if (end == std::string_view::npos) {
+      stop("a text in quotes");
+      return {};
+    }
+    const std::string_view text = rest_.substr(begin + 1, end - begin - 1);
+    rest_.remove_prefix(end + 1);
+    return text;
   }
 
 private:
   void skip_blanks() {
     while (rest_.starts_with(' ') || rest_.starts_with('\t')) rest_.remove_prefix(1);
   }
-  void stop() {
-    is_good_ = false;
+  void stop(std::string missing) {
+    if (is_good()) missing_ = std::move(missing);
     rest_ = {};
   }
 
   std::string_view rest_;
-  bool is_good_ = true;
+  std::string missing_;  // the first piece that is not there
 };
 
 bool is_keyword(Scanner& scanner, std::string_view keyword) {
@@ -81,6 +93,29 @@ bool is_keyword(Scanner& scanner, std::string_view keyword) {
 void set_id(MessageLine& message, std::uint32_t id) {
   message.is_extended = (id & kExtendedFlag) != 0;
   message.id = id & kLargestExtendedId;
+}
+
+/// Whether a line begins as a message or a signal.
+bool is_statement(std::string_view line) {
+  const std::size_t begin = std::min(line.find_first_not_of(" \t"), line.size());
+  const std::string_view first = line.substr(begin, 4);
+  return first == "BO_ " || first == "SG_ ";
+}
+
+/// Cuts off the message or signal that follows another one on its line. @return it, or nothing
+std::string_view cut_next_statement(std::string_view& line) {
+  if (!is_statement(line)) return {};
+  bool is_quoted = false;
+  for (std::size_t i = line.find('_'); i + 4 < line.size(); ++i) {
+    if (line[i] == '"') is_quoted = !is_quoted;
+    const std::string_view word = line.substr(i + 1, 4);
+    if (is_quoted || (line[i] != ' ' && line[i] != '\t')) continue;
+    if (word != "BO_ " && word != "SG_ ") continue;
+    const std::string_view rest = line.substr(i + 1);
+    line = line.substr(0, i);
+    return rest;
+  }
+  return {};
 }
 
 bool fits_a_frame(const DbcSignal& signal) {
@@ -96,19 +131,34 @@ bool fits_a_frame(const DbcSignal& signal) {
 
 }  // namespace
 
+DbcText::DbcText(std::string_view text) : rest_(text) {
+  if (rest_.starts_with(kByteOrderMark)) rest_.remove_prefix(kByteOrderMark.size());
+}
+
 bool DbcText::next(std::string_view& line) {
+  if (!more_.empty()) {
+    line = more_;
+    more_ = cut_next_statement(line);
+    return true;
+  }
   while (!rest_.empty()) {
     const std::size_t length = rest_.find('\n');
     line = rest_.substr(0, length);
     rest_.remove_prefix(length == std::string_view::npos ? rest_.size() : length + 1);
+    ++number_;
     const bool began_quoted = is_quoted_;
+    if (began_quoted && swallowing_from_ == 0 && is_statement(line)) {
+      swallowing_from_ = quoted_from_;
+    }
     for (std::size_t i = 0; i < line.size(); ++i) {
       if (line[i] == '\\')
         ++i;  // \" is a quote inside
-      else if (line[i] == '"')
-        is_quoted_ = !is_quoted_;
+      else if (line[i] == '"' && (is_quoted_ = !is_quoted_))
+        quoted_from_ = number_;
     }
-    if (!began_quoted) return true;
+    if (began_quoted) continue;
+    more_ = cut_next_statement(line);
+    return true;
   }
   return false;
 }
@@ -119,8 +169,8 @@ std::optional<MessageLine> parse_message_line(std::string_view line) {
   MessageLine message;
   set_id(message, scanner.number<std::uint32_t>());
   message.name = scanner.name();
-  scanner.expect(":");
-  if (!scanner.is_good()) return std::nullopt;
+  scanner.expect(':');
+  if (!scanner.is_good()) message.fault = scanner.fault();
   return message;
 }
 
@@ -129,30 +179,29 @@ std::optional<SignalLine> parse_signal_line(std::string_view line) {
   if (!is_keyword(scanner, "SG_")) return std::nullopt;
   SignalLine result;
   result.name = scanner.name();
-  if (!scanner.is_good()) return std::nullopt;
   DbcSignal& signal = result.signal;
   if (!scanner.take(':')) {
     // M is the selector, which is in every frame; m0 (or m0M) only in those where it is 0.
     if (scanner.name().starts_with('m')) result.fault = "is multiplexed: not in every frame";
-    scanner.expect(":");
+    scanner.expect(':');
   }
   signal.start_bit = scanner.number<int>();
-  scanner.expect("|");
+  scanner.expect('|');
   signal.length = scanner.number<int>();
-  scanner.expect("@");
+  scanner.expect('@');
   const bool is_little = scanner.take('1');
-  if (!is_little) scanner.expect("0");
+  if (!is_little) scanner.expect('0');
   signal.byte_order = is_little ? ByteOrder::little_endian : ByteOrder::big_endian;
   signal.is_signed = scanner.take('-');
-  if (!signal.is_signed) scanner.expect("+");
-  scanner.expect("(");
+  if (!signal.is_signed) scanner.expect('+');
+  scanner.expect('(');
   signal.factor = scanner.number<double>();
-  scanner.expect(",");
+  scanner.expect(',');
   signal.offset = scanner.number<double>();
-  scanner.expect(")");
+  scanner.expect(')');
   signal.unit = scanner.quoted();
   if (!scanner.is_good()) {
-    result.fault = "has a line that cannot be read";
+    result.fault = scanner.fault();
   } else if (!fits_a_frame(signal)) {
     result.fault = "lies outside of any frame, or is not 1 to 64 bits long";
   } else if (!std::isnormal(signal.factor) || !std::isfinite(signal.offset)) {
@@ -161,16 +210,31 @@ std::optional<SignalLine> parse_signal_line(std::string_view line) {
   return result;
 }
 
-std::optional<MessageLine> parse_float_line(std::string_view line) {
+std::optional<FloatLine> parse_float_line(std::string_view line) {
   Scanner scanner(line);
   if (!is_keyword(scanner, "SIG_VALTYPE_")) return std::nullopt;
-  MessageLine message;
-  set_id(message, scanner.number<std::uint32_t>());
-  message.name = scanner.name();
+  FloatLine result;
+  set_id(result.signal, scanner.number<std::uint32_t>());
+  result.signal.name = scanner.name();
   scanner.take(':');
-  const int type = scanner.number<int>();
-  if (!scanner.is_good() || type == 0) return std::nullopt;
-  return message;
+  result.type = scanner.number<int>();
+  if (!scanner.is_good() || result.type == 0) return std::nullopt;
+  return result;
+}
+
+std::optional<LongNameLine> parse_long_name_line(std::string_view line) {
+  Scanner scanner(line);
+  if (!is_keyword(scanner, "BA_")) return std::nullopt;
+  const std::string_view attribute = scanner.quoted();
+  const bool is_signal = attribute == "SystemSignalLongSymbol";
+  if (!is_signal && attribute != "SystemMessageLongSymbol") return std::nullopt;
+  LongNameLine result;
+  if (scanner.name() != (is_signal ? "SG_" : "BO_")) return std::nullopt;
+  set_id(result.of, scanner.number<std::uint32_t>());
+  if (is_signal) result.of.name = scanner.name();
+  result.name = scanner.quoted();
+  if (!scanner.is_good()) return std::nullopt;
+  return result;
 }
 
 }  // namespace scree::encoder

@@ -18,9 +18,18 @@ EncoderStream::EncoderStream(const EncoderSettings& settings, OnSample on_sample
       on_reading_(std::move(on_reading)),
       odometer_(settings) {}
 
+/// Of several sources of one parameter group the first is taken: each counts by itself.
+bool EncoderStream::is_mine(const CanFrame& frame) {
+  const auto wanted = static_cast<std::uint32_t>(settings_.can_id);
+  if (frame.is_extended != settings_.has_extended_id()) return false;
+  if (((frame.id ^ wanted) & settings_.id_mask()) != 0) return false;
+  if (settings_.any_source && !source_) source_ = frame.id;
+  return !settings_.any_source || frame.id == *source_;
+}
+
 void EncoderStream::take(const CanFrame& frame) {
   if (frame.is_error) return refuse(Refusal::error_frame);
-  if (frame.id != settings_.can_id || frame.is_extended != settings_.has_extended_id()) {
+  if (!is_mine(frame)) {
     ++counters_.other;
     return;
   }

@@ -1,5 +1,6 @@
 #include "scree/drivers/encoder/signal.hpp"
 
+#include <bit>
 #include <cmath>
 
 namespace scree::encoder {
@@ -26,14 +27,24 @@ std::optional<std::int64_t> read_signal(const EncoderSettings& layout,
   return static_cast<std::int64_t>(bits);
 }
 
+namespace {
+
+double number_of(const EncoderSettings& layout, std::int64_t raw) {
+  const auto bits = static_cast<std::uint64_t>(raw);
+  if (layout.is_float && layout.length == 64) return std::bit_cast<double>(bits);
+  if (layout.is_float) return std::bit_cast<float>(static_cast<std::uint32_t>(bits));
+  return layout.is_signed ? static_cast<double>(raw) : static_cast<double>(bits);
+}
+
+}  // namespace
+
 double scaled(const EncoderSettings& layout, std::int64_t raw) {
-  const double number = layout.is_signed ? static_cast<double>(raw)
-                                         : static_cast<double>(static_cast<std::uint64_t>(raw));
+  const double number = number_of(layout, raw);
   return (number * layout.factor + layout.offset) * layout.scale;
 }
 
 double quantum(const EncoderSettings& layout) {
-  return std::abs(layout.factor * layout.scale);
+  return layout.is_float ? 0 : std::abs(layout.factor * layout.scale);
 }
 
 }  // namespace scree::encoder

@@ -84,14 +84,10 @@ Result<std::string> holder_of(const std::string& name) {
   return holder_of(parts->chip, parts->line);
 }
 
-Result<void> check_names(const GpioSettings& settings) {
-  const std::array<std::pair<const char*, const std::string&>, 3> names = {
-      {{"pps", settings.pps}, {"stop", settings.stop}, {"heartbeat", settings.heartbeat}}};
-  for (const auto& [key, name] : names) {
-    if (name.empty()) continue;
-    if (const auto parts = parts_of(name); !parts) return of_key(key, name, parts.error());
-  }
-  return {};
+Result<void> check_name(const std::string& name) {
+  if (name.empty()) return {};
+  const auto parts = parts_of(name);
+  return parts ? Result<void>() : fail("\"" + name + "\" " + parts.error().message);
 }
 
 Result<Lines> Lines::open(const GpioSettings& settings) {

@@ -51,6 +51,13 @@ constexpr std::array<float, kShotsPerBlock> kShareOfStep = [] {
   return shares;
 }();
 
+/// A sensor whose clock is set by a GPS receiver may count on for some packets past the full hour
+/// before it begins anew.
+bool is_timestamp(std::uint32_t microseconds) {
+  constexpr std::uint32_t kMostPast = 1'000'000;
+  return microseconds < kHourUs + kMostPast;
+}
+
 unsigned azimuth_of(Bytes packet, std::size_t block) {
   const unsigned azimuth = read<std::uint16_t>(packet, block * kBlockSize + kAzimuthOffset);
   return azimuth == kFullTurn ? 0 : azimuth;
@@ -121,7 +128,7 @@ Refusal check_data_packet(Bytes datagram, LidarModel model) {
     const auto azimuth = read<std::uint16_t>(datagram, block * kBlockSize + kAzimuthOffset);
     if (azimuth > kFullTurn) return Refusal::azimuth;
   }
-  if (timestamp_us(datagram) >= kHourUs) return Refusal::timestamp;
+  if (!is_timestamp(read<std::uint32_t>(datagram, kTimestampOffset))) return Refusal::timestamp;
   return Refusal::none;
 }
 

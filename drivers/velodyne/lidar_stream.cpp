@@ -38,13 +38,13 @@ LidarStream::LidarStream(const LidarSettings& settings, OnSweep on_sweep, OnPack
 void LidarStream::take(Bytes datagram, std::int64_t arrival_ns) {
   const Refusal refusal = check_data_packet(datagram, model_);
   if (refusal != Refusal::none) return refuse(refusal);
-  if (product(datagram) != Product::hdl32e) return accept(datagram, arrival_ns);
+  if (product(datagram) != Product::hdl32e) return put_in_order(datagram, arrival_ns);
 
   const Firmware firmware = firmware_detector_.update(timestamp_us(datagram));
   if (firmware == Firmware::undecided) return hold(datagram, arrival_ns);
   release(firmware == Firmware::early_vlp16);
   if (firmware == Firmware::hdl32e) return refuse(Refusal::timing);
-  accept(datagram, arrival_ns);
+  put_in_order(datagram, arrival_ns);
 }
 
 void LidarStream::hold(Bytes packet, std::int64_t arrival_ns) {
@@ -61,7 +61,7 @@ void LidarStream::hold(Bytes packet, std::int64_t arrival_ns) {
 void LidarStream::release(bool accept_them) {
   for (std::size_t i = 0; i < held_count_; ++i) {
     if (accept_them) {
-      accept(held_[i].bytes, held_[i].arrival_ns);
+      put_in_order(held_[i].bytes, held_[i].arrival_ns);
     } else {
       refuse(Refusal::timing);
     }
@@ -71,33 +71,85 @@ void LidarStream::release(bool accept_them) {
 
 void LidarStream::flush() {
   release(false);
+  while (early_count_ > 0) accept_first_early();
   builder_.finish();
+}
+
+/// Time stamp since that of the packet before. @pre previous_
+std::int64_t LidarStream::elapsed_ns(Bytes packet) const {
+  // Within half an hour around zero; how many hours went by is the clock's business.
+  const std::int64_t stamp_ns = std::int64_t{timestamp_us(packet)} * 1000;
+  const std::int64_t elapsed = (stamp_ns - previous_->device_ns % kHourNs + kHourNs) % kHourNs;
+  return elapsed >= kHourNs / 2 ? elapsed - kHourNs : elapsed;
+}
+
+/// How long the sensor must have sent something else between the packet before and this one.
+std::int64_t LidarStream::gap_ns(Bytes packet) const {
+  return previous_ ? elapsed_ns(packet) - previous_->duration_ns : 0;
+}
+
+/// Datagrams overtake each other on their way. One that leaves a gap of a few packets waits until
+/// the gap is filled or as many others wait; without disorder and loss nothing waits.
+void LidarStream::put_in_order(Bytes packet, std::int64_t arrival_ns) {
+  const std::int64_t packet_ns = packet_duration_ns(return_mode(packet)), half = packet_ns / 2;
+  const std::int64_t most = static_cast<std::int64_t>(early_.size()) * packet_ns + half;
+  const auto is_early = [&] { return gap_ns(packet) > half && gap_ns(packet) <= most; };
+  const auto is_next_or_late = [&] {
+    return gap_ns(packet) <= half && gap_ns(packet) > -kMostLateNs;
+  };
+  while (early_count_ > 0 && !is_next_or_late() && !(is_early() && early_count_ < early_.size())) {
+    accept_first_early();
+  }
+  if (is_early()) {
+    keep_early(packet, arrival_ns);
+  } else {
+    accept(packet, arrival_ns);
+  }
+  while (early_count_ > 0 && gap_ns(early_[0].bytes) <= half) accept_first_early();
+}
+
+/// Oldest first. @pre there is room
+void LidarStream::keep_early(Bytes packet, std::int64_t arrival_ns) {
+  std::size_t at = early_count_;
+  while (at > 0 && elapsed_ns(early_[at - 1].bytes) >= elapsed_ns(packet)) --at;
+  if (at < early_count_ && timestamp_us(early_[at].bytes) == timestamp_us(packet)) {
+    return refuse(Refusal::duplicate);
+  }
+  const auto begin = early_.begin() + static_cast<std::ptrdiff_t>(at);
+  const auto end = early_.begin() + static_cast<std::ptrdiff_t>(early_count_);
+  std::move_backward(begin, end, end + 1);
+  std::copy(packet.begin(), packet.end(), begin->bytes.begin());
+  begin->arrival_ns = arrival_ns;
+  ++early_count_;
+}
+
+void LidarStream::accept_first_early() {
+  const Held first = early_[0];
+  std::move(early_.begin() + 1, early_.begin() + static_cast<std::ptrdiff_t>(early_count_),
+            early_.begin());
+  --early_count_;
+  accept(first.bytes, first.arrival_ns);
 }
 
 void LidarStream::accept(Bytes packet, std::int64_t arrival_ns) {
   const std::int64_t stamp_ns = std::int64_t{timestamp_us(packet)} * 1000;
   const std::int64_t sent_ns = stamp_ns + packet_duration_ns(return_mode(packet));
 
-  std::int64_t elapsed_ns = 0;
-  if (previous_) {
-    // Within half an hour around zero; how many hours went by is the clock's business.
-    elapsed_ns = (stamp_ns - previous_->device_ns % kHourNs + kHourNs) % kHourNs;
-    if (elapsed_ns >= kHourNs / 2) elapsed_ns -= kHourNs;
-    if (elapsed_ns == 0) return refuse(Refusal::duplicate);
-    if (elapsed_ns < 0 && elapsed_ns > -kMostLateNs) return refuse(Refusal::late);
-  }
+  const std::int64_t since_ns = previous_ ? elapsed_ns(packet) : 0;
+  if (previous_ && since_ns == 0) return refuse(Refusal::duplicate);
+  if (since_ns < 0 && since_ns > -kMostLateNs) return refuse(Refusal::late);
 
   const bool started_over = clock_.update(sent_ns % kHourNs, arrival_ns);
   counters_.device_restarts = clock_.device_restarts();
   counters_.host_steps = clock_.host_steps();
-  if (started_over || elapsed_ns < 0) {
+  if (started_over || since_ns < 0) {
     builder_.finish();
     previous_.reset();
   }
 
   decoder_.decode(packet, shots_);
-  if (previous_) count_lost(elapsed_ns);
-  const std::int64_t device_ns = previous_ ? previous_->device_ns + elapsed_ns : stamp_ns;
+  if (previous_) count_lost(since_ns);
+  const std::int64_t device_ns = previous_ ? previous_->device_ns + since_ns : stamp_ns;
   const std::int64_t host_ns = clock_.to_host(stamp_ns);
 
   std::int64_t duration_ns = packet_duration_ns(shots_.mode);

@@ -6,6 +6,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <optional>
 
 #include "scree/core/socket_message.hpp"
 
@@ -47,23 +48,43 @@ int grow_buffer(int socket) {
   return bytes;
 }
 
+/// @return in host byte order; nothing where it is no address, or that of a group
+std::optional<std::uint32_t> address_of(const std::string& text) {
+  in_addr address{};
+  if (inet_pton(AF_INET, text.c_str(), &address) != 1) return std::nullopt;
+  const std::uint32_t value = ntohl(address.s_addr);
+  return IN_MULTICAST(value) ? std::nullopt : std::optional(value);
+}
+
 }  // namespace
+
+Result<std::uint32_t> local_address(const std::string& text) {
+  if (const auto address = address_of(text)) return *address;
+  return fail(
+      "\"" + text +
+      "\" is not an IPv4 address of this computer to listen on, as 0.0.0.0 is (nor can it be "
+      "a multicast group: let the sensor send to this computer or to 255.255.255.255)");
+}
+
+Result<std::uint32_t> sender_address(const std::string& text) {
+  if (text.empty()) return 0;
+  if (const auto address = address_of(text)) return *address;
+  return fail("\"" + text +
+              "\" is not the IPv4 address of a sender, as 192.168.1.201 is (no name, no port)");
+}
 
 Result<UdpReceiver> UdpReceiver::open(const std::string& address, int port,
                                       const std::string& sender) {
+  const auto listened = local_address(address), accepted = sender_address(sender);
+  if (!listened) return tl::make_unexpected(listened.error());
+  if (!accepted) return tl::make_unexpected(accepted.error());
   sockaddr_in local{};
   local.sin_family = AF_INET;
   local.sin_port = htons(static_cast<std::uint16_t>(port));
-  if (inet_pton(AF_INET, address.c_str(), &local.sin_addr) != 1) {
-    return fail("\"" + address + "\" is not an IPv4 address to listen on, as 0.0.0.0 is");
-  }
-  in_addr accepted{};
-  if (!sender.empty() && inet_pton(AF_INET, sender.c_str(), &accepted) != 1) {
-    return fail("\"" + sender + "\" is not the IPv4 address of a sender, as 192.168.1.201 is");
-  }
+  local.sin_addr.s_addr = htonl(*listened);
 
   UdpReceiver receiver;
-  receiver.accepted_sender_ = ntohl(accepted.s_addr);
+  receiver.accepted_sender_ = *accepted;
   receiver.socket_ = Descriptor(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   const int descriptor = receiver.socket_.get();
   // SO_REUSEADDR stays off: a second daemon on the port would silently take the datagrams.

@@ -84,6 +84,14 @@ bool HealthWatch::update_sensors(std::int64_t now_ns, const LidarStatus& lidar,
   return has_changed;
 }
 
+std::string HealthWatch::foreign_sender(const LidarStatus& lidar) const {
+  if (!settings_.lidar.sender.empty()) return "not from " + settings_.lidar.sender;
+  return fmt::format(
+      "from {}, while those from {} are taken: two sensors send to this port, choose "
+      "one with lidar.sender",
+      ipv4_text(lidar.senders.other()), ipv4_text(lidar.senders.taken()));
+}
+
 SensorStatus HealthWatch::status_of(const LidarStatus& lidar) const {
   SensorStatus status;
   status.source = lidar.sender == 0 ? "" : ipv4_text(lidar.sender);
@@ -94,7 +102,7 @@ SensorStatus HealthWatch::status_of(const LidarStatus& lidar) const {
   status.kernel_drops = lidar.data_port.kernel_drops;
   add_refused(velodyne::kRefusalNames, velodyne::kRefusalReasons, lidar.lidar.refused, status);
   status.refused.push_back(
-      {"sender", "not from " + settings_.lidar.sender, lidar.data_port.foreign});
+      {"sender", foreign_sender(lidar), lidar.data_port.foreign + lidar.senders.left_out()});
   status.clock = lidar.clock;
   return status;
 }

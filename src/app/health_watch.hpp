@@ -53,6 +53,7 @@ public:
   const LogLines& log() const { return log_; }
 
 private:
+  std::string foreign_sender(const LidarStatus& lidar) const;
   SensorStatus status_of(const LidarStatus& lidar) const;
   SensorStatus status_of(const ImuStatus& imu) const;
   SensorStatus status_of(const EncoderStatus& encoder) const;

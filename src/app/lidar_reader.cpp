@@ -63,10 +63,12 @@ void LidarReader::read_data() {
   for (int i = 0; i < kBatch; ++i) {
     const auto datagram = ports_.data.receive(buffer_);
     if (!datagram) break;
+    arrival_ns_ = clock_.to_monotonic(datagram->arrival_ns, read_clocks());
+    const bool is_data = datagram->bytes.size() == velodyne::kDataPacketSize;
+    if (is_data && !status_.senders.takes(datagram->sender, arrival_ns_)) continue;
     status_.sender = datagram->sender;
     status_.datagram_size = static_cast<std::uint32_t>(datagram->bytes.size());
     status_.last_datagram_ns = steady_ns();
-    arrival_ns_ = clock_.to_monotonic(datagram->arrival_ns, read_clocks());
     stream_.take(datagram->bytes, arrival_ns_);
   }
   status_.lidar = stream_.counters();

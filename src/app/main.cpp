@@ -14,7 +14,6 @@
 #include "scree/app/pipeline.hpp"
 #include "scree/clock/clocks.hpp"
 #include "scree/drivers/gpio/lines.hpp"
-#include "scree/drivers/xsens/start_up.hpp"
 #include "service_manager.hpp"
 #include "supervisor.hpp"
 
@@ -43,29 +42,16 @@ scree::RobotLines robot_lines(scree::gpio::Lines& held) {
   return lines;
 }
 
-/// A configuration with which the daemon can start, as far as the files tell.
-scree::Result<scree::RunningConfig> read_config(const std::filesystem::path& file) {
-  auto config = scree::RunningConfig::read(file);
-  if (!config) return config;
-  if (const auto reason = scree::xsens::line_too_slow(config->settings().imu)) {
-    return scree::fail(file.string() + ": " + *reason);
-  }
-  if (const auto names = scree::gpio::check_names(config->settings().gpio); !names) {
-    return scree::fail(file.string() + ": " + names.error().message);
-  }
-  return config;
-}
-
 /// Checks the configuration and all that it names; nothing is opened or started.
 int check(const std::filesystem::path& file) {
-  const auto config = read_config(file);
+  const auto config = scree::RunningConfig::read(file);
   if (!config) return failed(config.error().message);
   const auto networks = scree::load_networks(config->settings(), file);
   return networks ? kStopped : failed(networks.error().message);
 }
 
 int run(const std::filesystem::path& file) {
-  auto config = read_config(file);
+  auto config = scree::RunningConfig::read(file);
   if (!config) return failed(config.error().message);
   const scree::Settings& settings = config->settings();
   auto lines = scree::gpio::Lines::open(settings.gpio);  // stop is on from here
@@ -106,7 +92,8 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kStopped : kUsage;
+    if (app.exit(error) != 0) return kUsage;
+    return std::fflush(stdout) == 0 ? kStopped : failed("cannot write to standard output");
   }
   scree::set_up_log();
   try {

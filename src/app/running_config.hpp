@@ -10,6 +10,8 @@ namespace scree {
 /// The configuration file of a running daemon, and what the daemon has taken from it.
 class RunningConfig {
 public:
+  /// The one check for a start, a reload and --check-config: everything that the daemon would
+  /// refuse as far as files tell. The error names file, line and key.
   static Result<RunningConfig> read(const std::filesystem::path& file);
 
   /// With what a DBC file says.

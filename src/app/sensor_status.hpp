@@ -6,6 +6,7 @@
 #include "scree/drivers/encoder/can_socket.hpp"
 #include "scree/drivers/encoder/encoder_stream.hpp"
 #include "scree/drivers/velodyne/lidar_stream.hpp"
+#include "scree/drivers/velodyne/one_sender.hpp"
 #include "scree/drivers/velodyne/udp_receiver.hpp"
 #include "scree/drivers/xsens/imu_stream.hpp"
 
@@ -18,6 +19,7 @@ struct LidarStatus {
   std::uint32_t sender = 0;         ///< of the last datagram
   std::uint32_t datagram_size = 0;  ///< of the last datagram
   std::int64_t last_datagram_ns = 0;
+  velodyne::OneSender senders;  ///< of data packets
 
   velodyne::LidarCounters lidar;
   velodyne::Firmware firmware = velodyne::Firmware::undecided;

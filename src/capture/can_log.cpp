@@ -6,7 +6,10 @@
 #include <charconv>
 #include <limits>
 #include <numeric>
+#include <utility>
 
+#include "scree/capture/capture.hpp"
+#include "scree/core/byte_order_mark.hpp"
 #include "scree/core/nanoseconds.hpp"
 
 namespace scree {
@@ -85,22 +88,73 @@ bool read_content(std::string_view text, CanFrame& frame) {
   return read_data(text, kClassicSize, frame);
 }
 
+void skip_blanks(std::string_view& text) {
+  text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
+}
+
+/// Cuts off the next word, and the blanks behind it.
+std::string_view word(std::string_view& text) {
+  const std::string_view found = text.substr(0, text.find_first_of(" \t"));
+  text.remove_prefix(found.size());
+  skip_blanks(text);
+  return found;
+}
+
+/// `1A0#00112233`, and perhaps the direction behind it.
+CanLineRefusal read_compact(std::string_view text, CanFrame& frame) {
+  std::string_view identifier;
+  if (text.ends_with(" R") || text.ends_with(" T")) text.remove_suffix(2);
+  if (!cut(text, '#', identifier)) return CanLineRefusal::form;
+  if (!read_identifier(identifier, frame)) return CanLineRefusal::identifier;
+  return read_content(text, frame) ? CanLineRefusal::none : CanLineRefusal::data;
+}
+
+/// `1A0   [4]  00 11 22 33`, perhaps with the direction and two flags before it.
+CanLineRefusal read_columns(std::string_view text, CanFrame& frame) {
+  std::string_view identifier = word(text);
+  if (identifier == "RX" || identifier == "TX") {
+    word(text);
+    word(text);
+    identifier = word(text);
+  }
+  const std::string_view length = word(text);
+  if (!length.starts_with('[') || !length.ends_with(']')) return CanLineRefusal::form;
+  if (!read_identifier(identifier, frame)) return CanLineRefusal::identifier;
+  std::size_t size = 0;
+  if (!read_number(length.substr(1, length.size() - 2), 10, size) || size > frame.data.size()) {
+    return CanLineRefusal::data;
+  }
+  if (text.starts_with("remote request")) {
+    frame.is_remote = true;
+    frame.size = static_cast<std::uint8_t>(size);
+    return size <= kClassicSize && !frame.is_error ? CanLineRefusal::none : CanLineRefusal::data;
+  }
+  for (frame.size = 0; frame.size < size; ++frame.size) {
+    const std::string_view byte = word(text);
+    if (byte.size() != 2 || !read_number(byte, 16, frame.data[frame.size])) {
+      return CanLineRefusal::data;
+    }
+  }
+  return CanLineRefusal::none;
+}
+
 }  // namespace
 
 CanLineRefusal parse_can_line(std::string_view line, CanFrame& frame, std::string_view& interface) {
   frame = {};
-  std::string_view time, identifier;
+  std::string_view time;
+  skip_blanks(line);
   if (line.ends_with('\r')) line.remove_suffix(1);
-  if (line.ends_with(" R") || line.ends_with(" T")) line.remove_suffix(2);
   if (!line.starts_with('(')) return CanLineRefusal::form;
   line.remove_prefix(1);
   if (!cut(line, ')', time) || !line.starts_with(' ')) return CanLineRefusal::form;
-  line.remove_prefix(1);
-  if (!cut(line, ' ', interface) || interface.empty()) return CanLineRefusal::form;
-  if (!cut(line, '#', identifier)) return CanLineRefusal::form;
+  skip_blanks(line);
+  interface = word(line);
+  if (interface.empty() || line.empty()) return CanLineRefusal::form;
   if (!read_time(time, frame.t_ns)) return CanLineRefusal::time;
-  if (!read_identifier(identifier, frame)) return CanLineRefusal::identifier;
-  return read_content(line, frame) ? CanLineRefusal::none : CanLineRefusal::data;
+  return line.find('#') != std::string_view::npos && line.find('[') == std::string_view::npos
+             ? read_compact(line, frame)
+             : read_columns(line, frame);
 }
 
 std::uint64_t CanLogCounters::all_refused() const {
@@ -113,6 +167,9 @@ Result<CanLogReader> CanLogReader::open(const std::filesystem::path& file) {
   std::error_code ignored;
   if (!reader.stream_ || std::filesystem::is_directory(file, ignored)) {
     return fail(fmt::format("cannot read {}", file.string()));
+  }
+  if (const std::string_view packer = packed_with(file); !packer.empty()) {
+    return fail(fmt::format("{}: is packed with {}: unpack it first", file.string(), packer));
   }
   return reader;
 }
@@ -130,7 +187,10 @@ bool CanLogReader::next(CanFrame& frame, std::string* interface) {
       continue;
     }
     if (!stream_.eof()) --length;  // the line's end is counted
-    const std::string_view line(line_.data(), length);
+    std::string_view line(line_.data(), length);
+    if (std::exchange(is_first_, false) && line.starts_with(kByteOrderMark)) {
+      line.remove_prefix(kByteOrderMark.size());
+    }
     if (line.empty() || line == "\r" || line.starts_with('#')) continue;
     std::string_view name;
     const CanLineRefusal refusal = parse_can_line(line, frame, name);

@@ -1,6 +1,9 @@
 #include "scree/capture/capture.hpp"
 
+#include <array>
+#include <fstream>
 #include <initializer_list>
+#include <utility>
 
 namespace scree {
 
@@ -31,6 +34,26 @@ Result<fs::path> imu_file(const fs::path& capture) {
 
 Result<fs::path> can_file(const fs::path& capture) {
   return file_of(capture, {"can.log"});
+}
+
+std::string_view packed_with(const fs::path& file) {
+  using namespace std::string_view_literals;
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kPackers = {
+      {{"\x1F\x8B"sv, "gzip"},
+       {"BZh"sv, "bzip2"},
+       {"\xFD"
+        "7zXZ\0"sv,
+        "xz"},
+       {"\x28\xB5\x2F\xFD"sv, "zstd"},
+       {"PK\x03\x04"sv, "zip"}}};
+  std::ifstream stream(file, std::ios::binary);
+  std::array<char, 8> head{};
+  stream.read(head.data(), head.size());
+  const std::string_view begin(head.data(), static_cast<std::size_t>(stream.gcount()));
+  for (const auto& [magic, packer] : kPackers) {
+    if (begin.starts_with(magic)) return packer;
+  }
+  return {};
 }
 
 std::optional<fs::path> settings_file(const fs::path& capture, const fs::path& given) {

@@ -3,8 +3,6 @@
 #include <pcap/dlt.h>
 #include <spdlog/fmt/fmt.h>
 
-#include <optional>
-
 namespace scree {
 namespace {
 
@@ -36,7 +34,24 @@ std::optional<Bytes> behind_ether_type(Bytes frame, std::size_t type_offset, std
   return frame.subspan(size);
 }
 
-std::optional<Bytes> network_layer(int link_type, Bytes frame) {
+}  // namespace
+
+bool is_network_link(int link_type) {
+  switch (link_type) {
+    case DLT_EN10MB:
+    case DLT_LINUX_SLL:
+    case DLT_LINUX_SLL2:
+    case DLT_RAW:
+    case DLT_IPV4:
+    case DLT_NULL:
+    case DLT_LOOP:
+      return true;
+    default:
+      return false;
+  }
+}
+
+std::optional<Bytes> ipv4_packet(int link_type, Bytes frame) {
   switch (link_type) {
     case DLT_EN10MB:
       return behind_ether_type(frame, 12, 14);
@@ -60,27 +75,10 @@ std::optional<Bytes> network_layer(int link_type, Bytes frame) {
   }
 }
 
-}  // namespace
-
-bool is_network_link(int link_type) {
-  switch (link_type) {
-    case DLT_EN10MB:
-    case DLT_LINUX_SLL:
-    case DLT_LINUX_SLL2:
-    case DLT_RAW:
-    case DLT_IPV4:
-    case DLT_NULL:
-    case DLT_LOOP:
-      return true;
-    default:
-      return false;
-  }
-}
-
 FrameKind parse_frame(int link_type, Bytes frame, std::size_t original_size, Datagram& datagram) {
   const bool cut = frame.size() < original_size;
   const FrameKind broken = cut ? FrameKind::truncated : FrameKind::other;
-  const std::optional<Bytes> network = network_layer(link_type, frame);
+  const std::optional<Bytes> network = ipv4_packet(link_type, frame);
   if (!network) return broken;
   Bytes ip = *network;
   if (ip.size() < 20) return broken;

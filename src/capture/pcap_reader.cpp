@@ -4,7 +4,11 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <array>
+#include <utility>
 
+#include "fragments.hpp"
+#include "pcapng_file.hpp"
+#include "scree/capture/capture.hpp"
 #include "scree/core/nanoseconds.hpp"
 
 namespace scree {
@@ -13,10 +17,17 @@ void PcapReader::Close::operator()(pcap* handle) const {
   pcap_close(handle);
 }
 
-PcapReader::PcapReader(std::string name, std::unique_ptr<pcap, Close> handle)
+PcapReader::PcapReader(std::string name, std::unique_ptr<pcap, Close> handle,
+                       std::unique_ptr<PcapngFile> pcapng)
     : name_(std::move(name)),
       handle_(std::move(handle)),
-      link_type_(pcap_datalink(handle_.get())) {}
+      pcapng_(std::move(pcapng)),
+      fragments_(std::make_unique<Fragments>()),
+      link_type_(pcapng_ ? pcapng_->link_type() : pcap_datalink(handle_.get())) {}
+
+PcapReader::PcapReader(PcapReader&&) noexcept = default;
+PcapReader& PcapReader::operator=(PcapReader&&) noexcept = default;
+PcapReader::~PcapReader() = default;
 
 Result<PcapReader> PcapReader::open(const std::filesystem::path& file) {
   std::error_code error;
@@ -28,6 +39,12 @@ Result<PcapReader> PcapReader::open(const std::filesystem::path& file) {
   if (std::filesystem::file_size(file, error) == 0) {
     return fail(fmt::format("{}: the file is empty", file.string()));
   }
+  if (const std::string_view packer = packed_with(file); !packer.empty()) {
+    return fail(fmt::format("{}: is packed with {}: unpack it first", file.string(), packer));
+  }
+  if (is_pcapng(file)) {
+    return PcapReader(file.string(), nullptr, std::make_unique<PcapngFile>(file));
+  }
   std::array<char, PCAP_ERRBUF_SIZE> reason{};
   std::unique_ptr<pcap, Close> handle(pcap_open_offline_with_tstamp_precision(
       file.c_str(), PCAP_TSTAMP_PRECISION_NANO, reason.data()));
@@ -35,10 +52,19 @@ Result<PcapReader> PcapReader::open(const std::filesystem::path& file) {
     return fail(fmt::format("{}: cannot be read as a pcap or pcapng file ({})", file.string(),
                             reason.data()));
   }
-  return PcapReader(file.string(), std::move(handle));
+  return PcapReader(file.string(), std::move(handle), nullptr);
+}
+
+bool PcapReader::next_of_pcapng(PcapRecord& record) {
+  if (pcapng_->next(record)) return true;
+  if (!pcapng_->fault().empty()) {
+    broken_off_ = fmt::format("{}: breaks off: {}", name_, pcapng_->fault());
+  }
+  return false;
 }
 
 bool PcapReader::next(PcapRecord& record) {
+  if (pcapng_) return next_of_pcapng(record);
   pcap_pkthdr* header = nullptr;
   const u_char* bytes = nullptr;
   const int result = pcap_next_ex(handle_.get(), &header, &bytes);
@@ -59,13 +85,26 @@ bool PcapReader::next(PcapRecord& record) {
   record.arrival_ns = seconds * kSecond + nanoseconds;
   record.bytes = {bytes, header->caplen};
   record.original_size = header->len;
+  record.link_type = link_type_;
   return true;
+}
+
+/// Takes a fragment; udp where its datagram is whole with it.
+FrameKind PcapReader::join(const PcapRecord& record, Datagram& datagram) {
+  ++frames_.fragments;
+  const auto packet = ipv4_packet(record.link_type, record.bytes);
+  const auto whole = packet ? fragments_->take(*packet) : std::nullopt;
+  if (!whole) return FrameKind::fragment;
+  frames_.fragments -= whole->fragments;
+  return parse_frame(DLT_RAW, whole->packet, whole->packet.size(), datagram);
 }
 
 bool PcapReader::next(Datagram& datagram) {
   PcapRecord record;
   while (next(record)) {
-    switch (parse_frame(link_type_, record.bytes, record.original_size, datagram)) {
+    FrameKind kind = parse_frame(record.link_type, record.bytes, record.original_size, datagram);
+    if (kind == FrameKind::fragment) kind = join(record, datagram);
+    switch (kind) {
       case FrameKind::udp:
         ++frames_.udp;
         datagram.arrival_ns = record.arrival_ns;
@@ -74,8 +113,7 @@ bool PcapReader::next(Datagram& datagram) {
         ++frames_.other;
         break;
       case FrameKind::fragment:
-        ++frames_.fragments;
-        break;
+        break;  // counted already
       case FrameKind::truncated:
         ++frames_.truncated;
         break;

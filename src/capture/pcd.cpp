@@ -5,11 +5,17 @@
 #include <pcl/io/pcd_io.h>
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <sstream>
+#include <vector>
 
 #include "pcd_header.hpp"
+#include "scree/core/read_file.hpp"
 
 namespace scree {
 namespace {
@@ -48,79 +54,131 @@ pcl::PCLPointCloud2 empty_blob(const PcdHeader& header) {
 }
 
 template <class T>
-float value_as_float(const std::uint8_t* bytes) {
+double value_of(const std::uint8_t* bytes) {
   T value;
   std::memcpy(&value, bytes, sizeof value);
-  return static_cast<float>(value);
+  return static_cast<double>(value);
 }
 
-using Reading = float (*)(const std::uint8_t*);
+using Reading = double (*)(const std::uint8_t*);
 
 Reading reading_of(const PcdField& field) {
-  if (field.type == 'F') return field.size == 4 ? value_as_float<float> : value_as_float<double>;
+  if (field.type == 'F') return field.size == 4 ? value_of<float> : value_of<double>;
   const bool is_signed = field.type == 'I';
   switch (field.size) {
     case 1:
-      return is_signed ? value_as_float<std::int8_t> : value_as_float<std::uint8_t>;
+      return is_signed ? value_of<std::int8_t> : value_of<std::uint8_t>;
     case 2:
-      return is_signed ? value_as_float<std::int16_t> : value_as_float<std::uint16_t>;
+      return is_signed ? value_of<std::int16_t> : value_of<std::uint16_t>;
     case 4:
-      return is_signed ? value_as_float<std::int32_t> : value_as_float<std::uint32_t>;
+      return is_signed ? value_of<std::int32_t> : value_of<std::uint32_t>;
     default:
-      return is_signed ? value_as_float<std::int64_t> : value_as_float<std::uint64_t>;
+      return is_signed ? value_of<std::int64_t> : value_of<std::uint64_t>;
   }
 }
 
-void copy_field(const std::vector<std::uint8_t>& points, std::size_t point_size,
-                const PcdField& field, FixedVector<float>& values) {
-  const Reading reading = reading_of(field);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    values[i] = reading(points.data() + i * point_size + field.offset);
+/// The values of one field, point by point.
+class FieldColumn {
+public:
+  FieldColumn(const pcl::PCLPointCloud2& blob, const PcdField& field)
+      : reading_(reading_of(field)),
+        bytes_(blob.data.data() + field.offset),
+        point_size_(blob.point_step),
+        size_(blob.width) {}
+
+  double operator[](std::size_t i) const { return reading_(bytes_ + i * point_size_); }
+
+  void copy_to(FixedVector<float>& values, double origin = 0) const {
+    for (std::size_t i = 0; i < size_; ++i) values[i] = static_cast<float>((*this)[i] - origin);
   }
+
+  /// Of the finite ones; 0 where there are none.
+  double median() const {
+    std::vector<double> values;
+    values.reserve(size_);
+    for (std::size_t i = 0; i < size_; ++i) {
+      if (const double value = (*this)[i]; std::isfinite(value)) values.push_back(value);
+    }
+    if (values.empty()) return 0;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+  }
+
+private:
+  Reading reading_;
+  const std::uint8_t* bytes_;
+  std::size_t point_size_, size_;
+};
+
+/// Whole metres near the middle of a cloud that lies far off, as one in UTM coordinates or at an
+/// altitude: there a float has not the digits, nor a raster the cells. Else zero.
+Eigen::Vector3d origin_for(const std::array<FieldColumn, 3>& coordinates) {
+  constexpr double kFar = 100;  // metres
+  const Eigen::Vector3d middle(coordinates[0].median(), coordinates[1].median(),
+                               coordinates[2].median());
+  if (middle.cwiseAbs().maxCoeff() < kFar) return Eigen::Vector3d::Zero();
+  return middle.array().round();
 }
 
-Result<std::string> read_file(const std::filesystem::path& file) {
-  std::error_code error;
-  if (!std::filesystem::exists(file, error)) return fail("no such file");
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream || !std::filesystem::is_regular_file(file, error)) return fail("cannot be read");
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return std::move(text).str();
+std::size_t lines_in(std::string_view text) {
+  std::size_t lines = 0;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line = text.substr(begin, end - begin);
+    if (line.find_first_not_of(" \t\r") != std::string_view::npos) ++lines;
+    begin = end + 1;
+  }
+  return lines;
+}
+
+/// The points' bytes, unpacked.
+Result<pcl::PCLPointCloud2> read_body(const std::string& bytes, const PcdHeader& header) {
+  // PCL explains itself on the terminal; our caller gets a sentence instead.
+  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
+  pcl::PCLPointCloud2 blob = empty_blob(header);
+  pcl::PCDReader reader;
+  constexpr int kVersion = 7;  // 0.7
+  int failed = 0;
+  if (header.data == PcdData::ascii) {
+    const std::string_view text = std::string_view(bytes).substr(header.body);
+    if (const std::size_t lines = lines_in(text); lines < header.points) {
+      return fail(fmt::format("is cut: {} of {} points are there", lines, header.points));
+    }
+    std::istringstream body{std::string(text)};
+    failed = reader.readBodyASCII(body, blob, kVersion);
+  } else {
+    const auto* body = reinterpret_cast<const unsigned char*>(bytes.data() + header.body);
+    failed =
+        reader.readBodyBinary(body, blob, kVersion, header.data == PcdData::binary_compressed, 0);
+  }
+  if (failed != 0 || blob.data.size() != header.points * header.point_size) {
+    return fail("has points that cannot be read");
+  }
+  return blob;
 }
 
 Result<PcdCloud> read_points(const std::string& bytes) {
   const auto header = parse_pcd_header(bytes);
   if (!header) return tl::make_unexpected(header.error());
-  PcdCloud cloud{PointCloud(header->points), header->viewpoint};
+  PcdCloud cloud{PointCloud(header->points), header->viewpoint.cast<float>()};
   cloud.resize(header->points);
   if (header->points == 0) return cloud;
+  const auto blob = read_body(bytes, *header);
+  if (!blob) return tl::make_unexpected(blob.error());
 
-  // PCL explains itself on the terminal; our caller gets a sentence instead.
-  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
-  pcl::PCLPointCloud2 blob = empty_blob(*header);
-  pcl::PCDReader reader;
-  constexpr int kVersion = 7;  // 0.7
-  int failed = 0;
-  if (header->data == PcdData::ascii) {
-    std::istringstream body(bytes.substr(header->body));
-    failed = reader.readBodyASCII(body, blob, kVersion);
-  } else {
-    const auto* body = reinterpret_cast<const unsigned char*>(bytes.data() + header->body);
-    failed =
-        reader.readBodyBinary(body, blob, kVersion, header->data == PcdData::binary_compressed, 0);
-  }
-  if (failed != 0 || blob.data.size() != header->points * header->point_size) {
-    return fail("has points that cannot be read");
-  }
-
-  copy_field(blob.data, header->point_size, *header->find({"x"}), cloud.x);
-  copy_field(blob.data, header->point_size, *header->find({"y"}), cloud.y);
-  copy_field(blob.data, header->point_size, *header->find({"z"}), cloud.z);
+  const std::array<FieldColumn, 3> coordinates = {FieldColumn(*blob, *header->find({"x"})),
+                                                  FieldColumn(*blob, *header->find({"y"})),
+                                                  FieldColumn(*blob, *header->find({"z"}))};
+  cloud.origin = origin_for(coordinates);
+  cloud.viewpoint = (header->viewpoint - cloud.origin).cast<float>();
+  coordinates[0].copy_to(cloud.x, cloud.origin.x());
+  coordinates[1].copy_to(cloud.y, cloud.origin.y());
+  coordinates[2].copy_to(cloud.z, cloud.origin.z());
   const PcdField* const reflectivity =
       header->find({"intensity", "intensities", "i", "reflectivity", "reflectance"});
   if (reflectivity != nullptr) {
-    copy_field(blob.data, header->point_size, *reflectivity, cloud.reflectivity);
+    FieldColumn(*blob, *reflectivity).copy_to(cloud.reflectivity);
   } else {
     std::fill(cloud.reflectivity.begin(), cloud.reflectivity.end(), 0.0F);
   }
@@ -129,11 +187,21 @@ Result<PcdCloud> read_points(const std::string& bytes) {
 
 }  // namespace
 
+bool is_pcd(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::array<char, 16> head{};
+  stream.read(head.data(), head.size());
+  std::string_view text(head.data(), static_cast<std::size_t>(stream.gcount()));
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  return text.starts_with("# .PCD") || text.starts_with("VERSION") || text.starts_with("FIELDS");
+}
+
 Result<PcdCloud> read_pcd(const std::filesystem::path& file) {
+  const auto bytes = read_file(file, std::numeric_limits<std::uintmax_t>::max());
+  if (!bytes) return tl::make_unexpected(bytes.error());
   std::string reason;
   try {
-    const auto bytes = read_file(file);
-    auto cloud = bytes ? read_points(*bytes) : Result<PcdCloud>(tl::make_unexpected(bytes.error()));
+    auto cloud = read_points(*bytes);
     if (cloud) return cloud;
     reason = cloud.error().message;
   } catch (const std::exception& error) {
@@ -143,24 +211,20 @@ Result<PcdCloud> read_pcd(const std::filesystem::path& file) {
 }
 
 Result<void> write_pcd(const std::filesystem::path& file, const PointView& points) {
-  PcdHeader header;
-  for (const char* name : {"x", "y", "z", "intensity"}) {
-    header.fields.push_back({name, 'F', 4, 1, header.point_size});
-    header.point_size += 4;
-  }
-  header.points = points.size();
-  pcl::PCLPointCloud2 blob = empty_blob(header);
+  // PCL would write through a mapping, which ends the program where the disk is full.
+  std::ofstream stream(file, std::ios::binary);
+  stream << fmt::format(
+      "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z intensity\n"
+      "SIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\nWIDTH {0}\nHEIGHT 1\n"
+      "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS {0}\nDATA binary\n",
+      points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const float values[] = {points.x[i], points.y[i], points.z[i], points.reflectivity[i]};
-    std::memcpy(blob.data.data() + i * header.point_size, values, sizeof values);
+    stream.write(reinterpret_cast<const char*>(values), sizeof values);
   }
-  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
-  try {
-    if (pcl::PCDWriter().writeBinary(file.string(), blob) == 0) return {};
-  } catch (const std::exception&) {
-    // PCL reports one failure as a number and another as an exception; both say as little.
-  }
-  return fail(fmt::format("cannot write {}", file.string()));
+  stream.close();
+  if (!stream) return fail(fmt::format("cannot write {}: the disk may be full", file.string()));
+  return {};
 }
 
 }  // namespace scree

@@ -45,6 +45,10 @@ std::string lower(std::string_view text) {
   return result;
 }
 
+char upper(char c) {
+  return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+}
+
 /// The lines of a header by their first word, and where the body begins.
 struct Lines {
   std::map<std::string_view, Words> values;
@@ -56,7 +60,8 @@ Result<Lines> header_lines(std::string_view file) {
   // A header is a few hundred bytes; what has none of its words this far in is no PCD file.
   constexpr std::size_t kMostHeader = 1 << 16;
   const std::string_view head = file.substr(0, kMostHeader);
-  for (std::size_t begin = 0; begin < head.size();) {
+  std::size_t begin = file.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
+  while (begin < head.size()) {
     const std::size_t end = head.find('\n', begin);
     if (end == std::string_view::npos) break;
     Words words = split(head.substr(begin, end - begin));
@@ -114,7 +119,7 @@ Result<std::vector<PcdField>> read_fields(const Lines& lines) {
     const std::string_view type = (*words_of("TYPE"))[i];
     const auto size = number((*words_of("SIZE"))[i]);
     const auto count = words_of("COUNT") == nullptr ? 1 : number((*words_of("COUNT"))[i]);
-    const char kind = type.size() == 1 ? type[0] : '?';
+    const char kind = type.size() == 1 ? upper(type[0]) : '?';
     const bool whole = kind == 'I' || kind == 'U';
     const std::size_t bytes = size.value_or(0);
     const bool known =
@@ -130,11 +135,11 @@ Result<std::vector<PcdField>> read_fields(const Lines& lines) {
 }
 
 /// Seven numbers, of which the first three are the place.
-Result<Eigen::Vector3f> read_viewpoint(const Lines& lines) {
+Result<Eigen::Vector3d> read_viewpoint(const Lines& lines) {
   const auto found = lines.values.find("VIEWPOINT");
-  if (found == lines.values.end()) return Eigen::Vector3f::Zero();
+  if (found == lines.values.end()) return Eigen::Vector3d::Zero();
   const Words& words = found->second;
-  Eigen::Vector3f place = Eigen::Vector3f::Zero();
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < words.size() && i < 3; ++i) {
     const char* const end = words[i].data() + words[i].size();
     const auto parsed = std::from_chars(words[i].data(), end, place[static_cast<int>(i)]);

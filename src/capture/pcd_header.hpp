@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "scree/core/byte_order_mark.hpp"
 #include "scree/core/result.hpp"
 
 namespace scree {
@@ -31,7 +32,7 @@ struct PcdHeader {
   std::size_t points = 0;
   std::size_t point_size = 0;  ///< bytes of one point
   PcdData data = PcdData::ascii;
-  Eigen::Vector3f viewpoint = Eigen::Vector3f::Zero();  ///< metres
+  Eigen::Vector3d viewpoint = Eigen::Vector3d::Zero();  ///< metres
   std::size_t body = 0;                                 ///< where the data begins in the file
 
   /// The first field of one of these names, whatever their case.

@@ -1,22 +1,32 @@
 #include "scree/config/configuration.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <map>
 #include <optional>
 #include <set>
-#include <sstream>
 #include <vector>
 #define TOML_EXCEPTIONS 1
 #include <spdlog/fmt/fmt.h>
 #include <toml++/toml.h>
 
+#include "contradiction.hpp"
 #include "scree/config/keys.hpp"
 #include "scree/config/near_names.hpp"
 #include "scree/config/removed_keys.hpp"
+#include "scree/core/read_file.hpp"
+#include "toml_string.hpp"
 
 namespace scree {
 namespace {
+
+/// In quotes where it is no bare key: then "lidar.port" is not taken for port in lidar.
+std::string part_of_name(std::string_view key) {
+  const bool is_bare = !key.empty() && std::ranges::all_of(key, [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-';
+  });
+  return is_bare ? std::string(key) : toml_string(key);
+}
 
 /// Reads one value at a time; keeps the first mistake.
 class Reader {
@@ -42,8 +52,8 @@ public:
   /// Names the first key of the file that no setting has.
   void refuse_unknown(const toml::table& table, const std::string& prefix) {
     for (const auto& [key, node] : table) {
-      const std::string name =
-          prefix.empty() ? std::string(key.str()) : prefix + "." + key.str().data();
+      if (error_) return;
+      const std::string name = (prefix.empty() ? "" : prefix + ".") + part_of_name(key.str());
       const auto longer = known_.lower_bound(name + ".");
       const bool is_table = longer != known_.end() && longer->starts_with(name + ".");
       if (is_table && node.is_table()) {
@@ -73,7 +83,7 @@ private:
       const std::string_view table = std::string_view(name).substr(0, name.rfind('.'));
       names.push_back(is_table ? table : name);
     }
-    return near_names(wanted, std::move(names), 1);
+    return near_names(wanted, names, 1);
   }
 
   void refuse(const toml::node& node, std::string_view name, std::string_view reason) {
@@ -154,61 +164,25 @@ private:
   std::optional<Error> error_;
 };
 
-/// Two or more keys that do not go together.
-struct Contradiction {
-  std::vector<std::string> keys;
-  std::string reason;
-};
-
-std::optional<Contradiction> contradiction(const DetectSettings& detect, std::string_view table) {
-  const auto of = [&](std::string_view key) { return fmt::format("{}.{}", table, key); };
-  constexpr double kLeastLeaf = 0.001;  // metres
-  if (detect.leaf_size > 0 && detect.leaf_size < kLeastLeaf) {
-    return Contradiction{{of("leaf_size")},
-                         fmt::format("{} must be 0 or at least {}", of("leaf_size"), kLeastLeaf)};
-  }
-  if (detect.method == Method::edges && detect.edges.ground_inner >= detect.edges.ground_outer) {
-    return Contradiction{
-        {of("ground_inner"), of("ground_outer")},
-        fmt::format("{} must be below {}", of("ground_inner"), of("ground_outer"))};
+/// A key stands on one line, so this also bounds how long keys are and how deep `a.b.c = 1` goes:
+/// a table is destroyed by recursion, and each level takes stack.
+std::optional<Error> too_long_line(std::string_view toml, const std::string& origin) {
+  constexpr std::size_t kLongestLine = 1000;
+  for (int line = 1; !toml.empty(); ++line) {
+    const std::size_t length = std::min(toml.find('\n'), toml.size());
+    if (length > kLongestLine) {
+      return Error{fmt::format("{}:{}: the line has {} characters, {} are the most", origin, line,
+                               length, kLongestLine)};
+    }
+    toml.remove_prefix(std::min(length + 1, toml.size()));
   }
   return std::nullopt;
-}
-
-std::optional<Contradiction> contradiction(const Settings& settings) {
-  if (settings.lidar.min_range >= settings.lidar.max_range) {
-    return Contradiction{{"lidar.min_range", "lidar.max_range"},
-                         "lidar.min_range must be below lidar.max_range"};
-  }
-  if (settings.lidar.port == settings.lidar.position_port) {
-    return Contradiction{{"lidar.port", "lidar.position_port"},
-                         "lidar.port and lidar.position_port must differ"};
-  }
-  const EncoderSettings& encoder = settings.encoder;
-  constexpr int kLargestFrame = 64;
-  if (encoder.frame_bytes() > kLargestFrame) {
-    return Contradiction{
-        {"encoder.start_bit", "encoder.length"},
-        "encoder.start_bit and encoder.length reach beyond the 64 bytes of the longest frame"};
-  }
-  if (encoder.scale == 0) return Contradiction{{"encoder.scale"}, "encoder.scale must not be 0"};
-  if (encoder.dbc.empty() != encoder.signal.empty()) {
-    return Contradiction{{"encoder.dbc", "encoder.signal"},
-                         "encoder.dbc and encoder.signal belong together, one of them is empty"};
-  }
-  if (settings.track.disappear > settings.track.appear) {
-    return Contradiction{{"track.disappear", "track.appear"},
-                         "track.disappear must not be above track.appear"};
-  }
-  auto found = contradiction(settings.detect_cloud, "detect.cloud");
-  if (!found) found = contradiction(settings.detect_map, "detect.map");
-  if (!found) found = contradiction(settings.detect_sweep, "detect.sweep");
-  return found;
 }
 
 /// Reads one file's text over the configuration.
 std::optional<Error> read_over(std::string_view toml, const std::string& origin,
                                Configuration& configuration) {
+  if (auto mistake = too_long_line(toml, origin)) return mistake;
   try {
     const toml::table root = toml::parse(toml, origin);
     Reader reader(root, origin, configuration);
@@ -221,13 +195,10 @@ std::optional<Error> read_over(std::string_view toml, const std::string& origin,
 }
 
 std::optional<Error> read_over(const std::filesystem::path& file, Configuration& configuration) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream || std::filesystem::is_directory(file)) {
-    return Error{fmt::format("cannot read the configuration file {}", file.string())};
-  }
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return read_over(text.str(), file.string(), configuration);
+  constexpr std::uintmax_t kLargestFile = 1 << 20;
+  const auto text = read_file(file, kLargestFile);
+  if (!text) return text.error();
+  return read_over(*text, file.string(), configuration);
 }
 
 /// A key that one file sets and another one's choice of a method leaves unread.

@@ -1,7 +1,10 @@
 #include "scree/config/near_names.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
+#include <set>
+#include <utility>
 
 namespace scree {
 namespace {
@@ -28,16 +31,18 @@ std::size_t distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
-std::string near_names(std::string_view wanted, std::vector<std::string_view> names,
+std::string near_names(std::string_view wanted, const std::vector<std::string_view>& names,
                        std::size_t most) {
-  std::sort(names.begin(), names.end(), [&](std::string_view a, std::string_view b) {
-    const std::size_t to_a = distance(wanted, a), to_b = distance(wanted, b);
-    return to_a != to_b ? to_a < to_b : a < b;
-  });
-  names.erase(std::unique(names.begin(), names.end()), names.end());
+  constexpr std::size_t kLongest = 128;  // each distance takes the product of two lengths
+  wanted = wanted.substr(0, kLongest);
+  std::set<std::pair<std::size_t, std::string_view>> nearest;
+  for (const std::string_view name : names) {
+    if (name.size() <= kLongest) nearest.emplace(distance(wanted, name), name);
+    if (nearest.size() > most) nearest.erase(std::prev(nearest.end()));
+  }
   std::string text;
-  for (std::size_t i = 0; i < std::min(names.size(), most); ++i) {
-    text += (i == 0 ? "" : ", ") + std::string(names[i]);
+  for (const auto& [letters, name] : nearest) {
+    text += (text.empty() ? "" : ", ") + std::string(name);
   }
   return text;
 }

@@ -1,8 +1,13 @@
 #include <spdlog/fmt/fmt.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <sstream>
 
 #include "scree/config/configuration.hpp"
 #include "scree/config/keys.hpp"
 #include "scree/config/reload.hpp"
+#include "toml_string.hpp"
 
 namespace scree {
 namespace {
@@ -21,7 +26,7 @@ std::string toml_value(double value) {
   return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
 }
 std::string toml_value(const std::string& value) {
-  return "\"" + value + "\"";
+  return toml_string(value);
 }
 std::string toml_value(const Eigen::Vector3d& value) {
   return fmt::format("[{}, {}, {}]", toml_value(value.x()), toml_value(value.y()),
@@ -58,12 +63,27 @@ std::string_view head_of(std::string_view file) {
   return {};
 }
 
+/// A remark ends with its line, so a file's name must not break it.
+std::string remark(const Source& source) {
+  std::string text = source.text();
+  std::ranges::replace_if(
+      text, [](unsigned char c) { return c < ' ' || c == 0x7F; }, '?');
+  return text;
+}
+
 bool is_shown(const Key& key, const Source& source, Shown shown) {
   if (shown == Shown::all || !source.is_default()) return true;
   return shown == Shown::owners && file_of(key) == kOwnersFile;
 }
 
 }  // namespace
+
+std::string toml_string(std::string_view text) {
+  const toml::value<std::string> value{std::string(text)};
+  std::ostringstream written;
+  written << toml::toml_formatter{value, toml::format_flags::allow_unicode_strings};
+  return written.str();
+}
 
 std::string_view file_of(const Key& key) {
   if (key.table == "detect.cloud") return "cloud.toml";
@@ -111,7 +131,7 @@ std::string effective_toml(const Configuration& configuration, Shown shown) {
       table = key.table;
     }
     text += fmt::format("{:<{}}  # {}\n", fmt::format("{} = {}", key.name, toml_value(value)),
-                        kColumn, source.text());
+                        kColumn, remark(source));
   });
   return text;
 }

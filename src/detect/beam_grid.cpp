@@ -36,6 +36,8 @@ void BeamGrid::build(PointView cloud, std::span<const BeamCount> beams,
     const float height = cloud.z[i] - surface.height(x, y);
     if (!(height <= highest)) continue;
     const std::size_t cell = surface.cell_at(x, y);
+    // The raster is laid out for the points that found room; others may lie at its edge or beyond.
+    if (!surface.has_neighbours(cell)) continue;
     all_ended_[cell] += beams[i].ended;
     all_scatter_[cell] += beams[i].scatter;
     if (height < lowest) continue;

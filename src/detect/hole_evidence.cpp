@@ -100,6 +100,7 @@ void HoleEvidence::mark_lost(const Eigen::Vector3f& from, const Eigen::Vector3f&
   for (int i = 0; i < steps; ++i, at += stride) {
     if (!surface.covers(at.x(), at.y())) return;
     const std::size_t cell = surface.cell_at(at.x(), at.y());
+    if (!surface.has_neighbours(cell)) return;
     if (surface.is_ground(cell)) {
       if (surface.height(at.x(), at.y()) - at.z() > kBelow) return;
       continue;

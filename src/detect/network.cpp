@@ -11,6 +11,8 @@
 #include <optional>
 #include <sstream>
 
+#include "scree/core/read_file.hpp"
+
 namespace scree {
 namespace {
 
@@ -225,17 +227,9 @@ Result<Network> Network::parse(std::string_view text, const std::string& origin)
 
 Result<Network> Network::load(const std::filesystem::path& file) {
   constexpr std::uintmax_t kLargestFile = 1 << 20;
-  std::error_code failure;
-  const std::uintmax_t size = std::filesystem::file_size(file, failure);
-  std::ifstream stream(file, std::ios::binary);
-  if (failure || !stream)
-    return fail(fmt::format("cannot read the network file {}", file.string()));
-  if (size > kLargestFile) {
-    return fail(fmt::format("{}:1: {} bytes are too many for a network", file.string(), size));
-  }
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return parse(text.str(), file.string());
+  const auto text = read_file(file, kLargestFile);
+  if (!text) return tl::make_unexpected(text.error());
+  return parse(*text, file.string());
 }
 
 std::string Network::to_text(std::string_view provenance) const {

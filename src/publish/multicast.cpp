@@ -15,6 +15,12 @@ namespace {
 
 constexpr std::string_view kProvider = "udpm://";
 
+std::string no_url(const std::string& url) {
+  return "the LCM url " + url +
+         " must look like udpm://239.255.76.67:7667?ttl=0, with a multicast address "
+         "(224.0.0.0 to 239.255.255.255) and a port";
+}
+
 Result<sockaddr_in> group_of(const std::string& url) {
   const std::string_view rest = std::string_view(url).substr(kProvider.size());
   const std::string network(rest.substr(0, rest.find('?')));
@@ -30,9 +36,7 @@ Result<sockaddr_in> group_of(const std::string& url) {
   }
   if (port == 0 || inet_pton(AF_INET, address.c_str(), &group.sin_addr) != 1 ||
       !IN_MULTICAST(ntohl(group.sin_addr.s_addr))) {
-    return fail("the LCM url " + url +
-                " must look like udpm://239.255.76.67:7667?ttl=0, with a multicast address "
-                "(224.0.0.0 to 239.255.255.255) and a port");
+    return fail(no_url(url));
   }
   group.sin_port = htons(port);
   return group;
@@ -40,8 +44,16 @@ Result<sockaddr_in> group_of(const std::string& url) {
 
 }  // namespace
 
+Result<void> check_lcm_url(const std::string& url) {
+  if (is_multicast(url)) return group_of(url).map([](const sockaddr_in&) {});
+  for (const std::string_view other : {"tcpq://", "mpudpm://", "memq://", "file://"}) {
+    if (url.starts_with(other)) return {};
+  }
+  return fail(no_url(url));
+}
+
 Result<void> check_multicast(const std::string& lcm_url) {
-  if (!lcm_url.starts_with(kProvider)) return {};
+  if (!is_multicast(lcm_url)) return check_lcm_url(lcm_url);
   const auto group = group_of(lcm_url);
   if (!group) return tl::make_unexpected(group.error());
 
@@ -59,6 +71,28 @@ Result<void> check_multicast(const std::string& lcm_url) {
   return fail("no route to the multicast group of " + lcm_url + " (" + std::strerror(reason) +
               "); to use LCM on this computer alone, run as root: ip link set lo multicast on; "
               "ip route add 224.0.0.0/4 dev lo");
+}
+
+bool is_multicast(const std::string& lcm_url) {
+  return lcm_url.starts_with(kProvider);
+}
+
+Result<Descriptor> listen_to_group(const std::string& lcm_url) {
+  const auto group = group_of(lcm_url);
+  if (!group) return tl::make_unexpected(group.error());
+  Descriptor socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  ip_mreq membership{};
+  membership.imr_multiaddr = group->sin_addr;
+  const int shared = 1, buffer = 4 << 20;  // a long list comes in many datagrams at once
+  setsockopt(socket.get(), SOL_SOCKET, SO_RCVBUF, &buffer, sizeof buffer);
+  if (!socket.is_open() ||
+      setsockopt(socket.get(), SOL_SOCKET, SO_REUSEADDR, &shared, sizeof shared) != 0 ||
+      bind(socket.get(), reinterpret_cast<const sockaddr*>(&*group), sizeof *group) != 0 ||
+      setsockopt(socket.get(), IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof membership) !=
+          0) {
+    return fail("cannot listen to " + lcm_url + ": " + std::strerror(errno));
+  }
+  return socket;
 }
 
 }  // namespace scree

@@ -1,49 +1,122 @@
 #include "scree/publish/subscriber.hpp"
 
+#include <poll.h>
+#include <sys/select.h>
+#include <sys/socket.h>
+
 #include <cerrno>
 #include <utility>
 
+#include "lcm_datagrams.hpp"
+#include "message_bounds.hpp"
+#include "scree/core/socket_message.hpp"
 #include "scree/publish/multicast.hpp"
 #include "scree/publish/publisher.hpp"
 
 namespace scree {
+namespace {
 
-// LCM's C interface is used here: lcm-cpp calls subscriptions through a pointer to a member, which
-// trips the undefined-behaviour sanitizer.
+/// liblcm waits with select(), which writes beyond its memory for any other descriptor.
+bool can_wait_for(lcm_t* lcm) {
+  const int descriptor = lcm_get_fileno(lcm);
+  return descriptor >= 0 && descriptor < FD_SETSIZE;
+}
+
+}  // namespace
 
 Result<std::unique_ptr<Subscriber>> Subscriber::open(const std::string& lcm_url, OnList on_list,
                                                      OnHealth on_health, OnGrid on_grid) {
   if (const auto routed = check_multicast(lcm_url); !routed) {
     return tl::make_unexpected(routed.error());
   }
-  lcm_t* lcm = lcm_create(lcm_url.c_str());
-  if (lcm == nullptr) return fail("LCM cannot open " + lcm_url);
-  return std::unique_ptr<Subscriber>(
-      new Subscriber(lcm, std::move(on_list), std::move(on_health), std::move(on_grid)));
+  std::unique_ptr<Subscriber> subscriber(
+      new Subscriber(std::move(on_list), std::move(on_health), std::move(on_grid)));
+  if (is_multicast(lcm_url)) {
+    auto socket = listen_to_group(lcm_url);
+    if (!socket) return tl::make_unexpected(socket.error());
+    subscriber->socket_ = std::move(*socket);
+  } else if (!subscriber->subscribe(lcm_url)) {
+    return fail("LCM cannot open " + lcm_url + ": is there a server that answers?");
+  }
+  return subscriber;
 }
 
-Subscriber::Subscriber(lcm_t* lcm, OnList on_list, OnHealth on_health, OnGrid on_grid)
-    : lcm_(lcm),
+Subscriber::Subscriber(OnList on_list, OnHealth on_health, OnGrid on_grid)
+    : datagrams_(std::make_unique<LcmDatagrams>()),
+      buffer_(1 << 16),  // the longest datagram
       on_list_(std::move(on_list)),
       on_health_(std::move(on_health)),
-      on_grid_(std::move(on_grid)) {
-  lcm_subscribe(lcm, kObstaclesChannel, take<obstacle_list_t, OnList, &Subscriber::on_list_>, this);
-  lcm_subscribe(lcm, kHealthChannel, take<health_t, OnHealth, &Subscriber::on_health_>, this);
-  if (!on_grid_) return;
-  lcm_subscribe(lcm, kGridChannel, take<grid_t, OnGrid, &Subscriber::on_grid_>, this);
+      on_grid_(std::move(on_grid)) {}
+
+Subscriber::~Subscriber() = default;
+
+/// LCM's C interface is used here: lcm-cpp calls subscriptions through a pointer to a member, which
+/// trips the undefined-behaviour sanitizer.
+bool Subscriber::subscribe(const std::string& lcm_url) {
+  lcm_.reset(lcm_create(lcm_url.c_str()));
+  if (!lcm_ || !can_wait_for(lcm_.get())) return false;
+  const auto on_message = [](const lcm_recv_buf_t* buffer, const char* channel, void* subscriber) {
+    const auto* data = static_cast<const std::uint8_t*>(buffer->data);
+    static_cast<Subscriber*>(subscriber)->take({channel, {data, buffer->data_size}});
+  };
+  for (const char* channel : {kObstaclesChannel, kHealthChannel, kGridChannel}) {
+    if (lcm_subscribe(lcm_.get(), channel, on_message, this) == nullptr) return false;
+  }
+  return true;
 }
 
 bool Subscriber::handle(int milliseconds) {
+  if (socket_.is_open()) return handle_datagrams(milliseconds);
+  if (!can_wait_for(lcm_.get())) return false;
   errno = 0;
   return lcm_handle_timeout(lcm_.get(), milliseconds) >= 0 || errno == EINTR;
 }
 
-template <class Message, class Handler, Handler Subscriber::*handler>
-void Subscriber::take(const lcm_recv_buf_t* buffer, const char*, void* subscriber) {
+bool Subscriber::handle_datagrams(int milliseconds) {
+  pollfd wait_for{socket_.get(), POLLIN, 0};
+  if (poll(&wait_for, 1, milliseconds) < 0) return errno == EINTR;
+  constexpr int kMost = 1000;  // without a message in them the caller gets its turn
+  for (int i = 0; i < kMost; ++i) {
+    std::uint32_t drops = 0;
+    const SocketMessage received = receive_message(socket_.get(), buffer_, drops);
+    if (received.size < 0) return errno == EAGAIN || errno == EWOULDBLOCK;
+    const std::uint64_t sender = std::uint64_t{received.sender.sin_addr.s_addr} << 16U |
+                                 std::uint64_t{received.sender.sin_port};
+    const auto message =
+        datagrams_->take({buffer_.data(), static_cast<std::size_t>(received.size)}, sender);
+    if (message && take(*message)) return true;
+  }
+  return true;
+}
+
+/// Whether it is of a channel that is listened to.
+bool Subscriber::take(const LcmMessage& message) {
+  if (message.channel == kObstaclesChannel) {
+    decode<obstacle_list_t>(message, is_obstacle_list(message.data), on_list_);
+  } else if (message.channel == kHealthChannel) {
+    decode<health_t>(message, is_health(message.data), on_health_);
+  } else if (message.channel == kGridChannel && on_grid_) {
+    decode<grid_t>(message, is_grid(message.data), on_grid_);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+template <class Message, class Handler>
+void Subscriber::decode(const LcmMessage& encoded, bool is_sound, const Handler& handler) {
   Message message{};
   // Fails on another type of the same channel, as of another version of Scree.
-  if (message.decode(buffer->data, 0, static_cast<int>(buffer->data_size)) < 0) return;
-  (static_cast<Subscriber*>(subscriber)->*handler)(message);
+  if (!is_sound ||
+      message.decode(encoded.data.data(), 0, static_cast<int>(encoded.data.size())) < 0) {
+    ++refused_;
+    return;
+  }
+  handler(message);
+}
+
+std::uint64_t Subscriber::refused() const {
+  return refused_ + datagrams_->refused();
 }
 
 }  // namespace scree

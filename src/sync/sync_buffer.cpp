@@ -11,13 +11,31 @@ double seconds(std::int64_t ns) {
   return static_cast<double>(ns) * 1e-9;
 }
 
+/// Times of which any two can be subtracted.
+bool is_time(std::int64_t t_ns) {
+  constexpr std::int64_t kFarthest = std::int64_t{1} << 62;
+  return t_ns > -kFarthest && t_ns < kFarthest;
+}
+
 bool is_sound(const ImuSample& sample) {
   constexpr double kUnit = 0.1;  // how far a quaternion's length may be from 1
-  return std::abs(sample.orientation.norm() - 1) < kUnit && is_plausible(sample);
+  return is_time(sample.t_ns) && std::abs(sample.orientation.norm() - 1) < kUnit &&
+         is_plausible(sample);
 }
 
 bool is_sound(const EncoderSample& sample) {
-  return std::isfinite(sample.distance);
+  constexpr double kFarthest = 1e9;  // metres: years of driving
+  return is_time(sample.t_ns) && std::abs(sample.distance) < kFarthest;
+}
+
+/// Whether a wheel can have come from one to the other. Readings that were held up on the way come
+/// with hardly any time between them.
+bool can_follow(const EncoderSample& before, const EncoderSample& sample) {
+  constexpr double kMostSpeed = 200;  // m/s, the largest encoder.max_speed
+  const std::int64_t apart_ns = sample.t_ns - before.t_ns;
+  if (apart_ns > SyncBuffer::kSilenceNs) return true;  // it begins anew
+  const double longest = kMostSpeed * seconds(apart_ns + SyncBuffer::kSilenceNs);
+  return std::abs(sample.distance - before.distance) <= longest;
 }
 
 /// Whether the clock was set back before this sample.
@@ -73,6 +91,7 @@ bool SyncBuffer::accept(ImuSample sample) {
 bool SyncBuffer::accept(const EncoderSample& sample) {
   if (!is_sound(sample)) return false;
   if (is_set_back(wheel_, sample)) wheel_.clear();
+  if (!wheel_.empty() && !can_follow(wheel_.newest(), sample)) return false;
   return wheel_.push(sample);
 }
 

@@ -3,10 +3,12 @@
 import json
 import os
 import signal
+import socket
 import sys
+import time
 
 from programs import PATIENCE, ProgramTest, free_port, main
-from synthetic_capture import write_capture
+from synthetic_capture import data_packet, write_capture
 
 SCREED, SCREE = sys.argv[1:3]
 
@@ -92,6 +94,22 @@ class DaemonTest(ProgramTest):
         self.start_daemon()
         result = self.run_to_end(SCREED, "--config", self.config)
         self.assert_fails(result, f"UDP port {self.port}", "in use")
+
+    def test_of_two_sensors_on_one_port_one_is_taken_and_both_are_named(self):
+        daemon = self.start_daemon()
+        senders = []
+        for address in ("127.0.0.1", "127.0.0.2"):
+            sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+            self.addCleanup(sender.close)
+            sender.bind((address, 0))
+            senders.append(sender)
+        for number in range(200):
+            for sender in senders:
+                sender.sendto(data_packet(number), ("127.0.0.1", self.port))
+            time.sleep(0.001)
+        line = self.read_until(daemon.stderr, "two sensors send to this port")
+        for words in ("127.0.0.1", "127.0.0.2", "lidar.sender"):
+            self.assertIn(words, line)
 
     def test_a_mistake_in_the_configuration_names_file_line_and_key(self):
         config = self.write("wrong.toml", "[lidar]\nport = 70000\n")

@@ -6,9 +6,12 @@ import os
 import random
 import re
 import struct
+import subprocess
 import sys
 
+from pcap_file import write_pcap
 from programs import ProgramTest, main
+from synthetic_capture import PACKET_NS, data_packet, frame
 
 SCREE, DATA = sys.argv[1:3]
 PAPER = os.path.join(os.path.dirname(__file__), "..", "..", "config", "paper.toml")
@@ -209,14 +212,30 @@ class DetectTest(ProgramTest):
     def test_clouds_with_hardly_anything_are_no_failure(self):
         nan, inf = math.nan, math.inf
         for name, points in {
-            "empty": [],
             "one": [(1.0, 2.0, 3.0)],
             "equal": [(1.0, 2.0, 3.0)] * 5000,
-            "broken": [(nan, 0.0, 0.0), (inf, 0.0, 0.0), (0.0, -inf, 0.0), (3e38, 0.0, 1e30)] * 50,
         }.items():
             for data in ("ascii", "binary"):
                 lists = self.detect(self.write_pcd(f"{name}.pcd", points, data))
                 self.assertEqual([each["obstacles"] for each in lists], [[]], name)
+        for points, words in [
+            ([], "holds no points"),
+            ([(nan, 0.0, 0.0), (inf, 0.0, 0.0), (0.0, -inf, 0.0)] * 50, "none of its 150 points"),
+        ]:
+            result = self.run_to_end(SCREE, "detect", self.write_pcd("none.pcd", points))
+            self.assert_fails(result, words)
+
+    def test_a_capture_without_a_return_was_not_looked_at(self):
+        def without_returns(number):
+            packet = bytearray(data_packet(number))
+            for block in range(0, 1200, 100):
+                packet[block + 4 : block + 100] = bytes(96)
+            return bytes(packet)
+
+        records = ((number * PACKET_NS, frame(without_returns(number), 2368)) for number in range(400))
+        write_pcap(self.path("dark.pcap"), records)
+        result = self.run_to_end(SCREE, "detect", self.path("dark.pcap"))
+        self.assert_fails(result, "dark.pcap: nothing was looked at")
 
     def test_failures_are_one_sentence_and_exit_1(self):
         garbled = self.path("garbled.pcd")
@@ -232,6 +251,10 @@ class DetectTest(ProgramTest):
             said = self.scree("detect", *arguments, "--out", self.path("l.jsonl"), code=1).stderr
             self.assertEqual(len(said.splitlines()), 1, said)
         self.scree("detect", self.simulated_cloud(), "--out", "/dev/full", code=1)
+        for arguments in (["--help"], ["--version"], ["detect", "--help"]):
+            with open("/dev/full", "w") as full:
+                ended = subprocess.run([SCREE, *arguments], stdout=full, stderr=subprocess.PIPE)
+            self.assertEqual(ended.returncode, 1, ended.stderr)
         self.scree("detect", self.simulated_cloud(), "--out", self.path("no/such/l.jsonl"), code=1)
 
     def test_wrong_usage_exits_2(self):

@@ -95,7 +95,7 @@ class ServiceTest(ProgramTest):
         self.assertIn(f"{self.config}:10: stop.length", line)
         os.remove(self.config)
         self.reload()
-        self.read_until(self.daemon.stderr, "cannot read the configuration file")
+        self.read_until(self.daemon.stderr, "cannot read ")
         self.configure("[stop]\nlength = 4.5\n")
         self.reload()
         self.read_until(self.daemon.stderr, "changed are stop.length")
@@ -114,7 +114,18 @@ class ServiceTest(ProgramTest):
         self.configure('[detect.map]\nnetwork = "none.txt"\n')
         self.assert_fails(self.run_to_end(*check), "none.txt")
         self.configure('[gpio]\nstop = "gpiochip0"\n')
-        self.assert_fails(self.run_to_end(*check), 'gpio.stop = "gpiochip0": must be CHIP:LINE')
+        self.assert_fails(self.run_to_end(*check), 'gpio.stop: "gpiochip0" must be CHIP:LINE')
+        for table, key, value in [
+            ("lidar", "sender", "192.168.1.201:2368"),
+            ("lidar", "sender", "velodyne.local"),
+            ("lidar", "address", "239.1.2.3"),
+            ("lcm", "url", "udpm://127.0.0.1:7667?ttl=0"),
+            ("lcm", "url", "pigeon://coop"),
+        ]:
+            config = self.write("wrong.toml", f'[{table}]\n\n{key} = "{value}"\n')
+            for arguments in [[], ["--check-config"]]:
+                result = self.run_to_end(SCREED, *arguments, "--config", config)
+                self.assert_fails(result, f"{config}:3: {table}.{key}: ", value)
 
     def test_the_journal_gets_levels(self):
         with open(self.path("log"), "w") as log:

@@ -90,6 +90,15 @@ Finding check_lidar_traffic(const LidarSettings& lidar, const LidarTraffic& traf
       traffic.heard, [&](const DatagramKind& kind) { return is_data(kind) && is_wanted(kind); });
   if (packets) {
     const auto& [kind, count] = *packets;
+    const auto second = busiest(traffic.heard, [&](const DatagramKind& other) {
+      return is_data(other) && is_wanted(other) && other.sender != packets->first.sender;
+    });
+    if (second) {
+      return wrong(subject,
+                   fmt::format("packets come from {} and from {}: screed takes those of one "
+                               "of them, choose it with lidar.sender",
+                               ipv4_text(kind.sender), ipv4_text(second->first.sender)));
+    }
     return ok(subject, fmt::format("{:.0f} packets a second of {} bytes from {}",
                                    static_cast<double>(count) / traffic.seconds, kind.size,
                                    ipv4_text(kind.sender)));

@@ -97,7 +97,8 @@ void Listening::listen_once(std::int64_t now_ns) {
     if (!frame) break;
     if (frame->is_error) continue;
     const EncoderSettings& wanted = settings_.encoder;
-    const bool is_wanted = frame->id == static_cast<std::uint32_t>(wanted.can_id) &&
+    const auto id = static_cast<std::uint32_t>(wanted.can_id);
+    const bool is_wanted = ((frame->id ^ id) & wanted.id_mask()) == 0 &&
                            frame->is_extended == wanted.has_extended_id();
     ++(is_wanted ? encoder_->wanted : encoder_->others);
     if (!is_wanted) encoder_->other_id = frame->id;

@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <set>
 
 #include "scoring/json_field.hpp"
+#include "scree/core/read_file.hpp"
 
 namespace scree {
 namespace {
@@ -194,11 +194,10 @@ Eigen::Vector2d TrueObstacle::velocity_at(std::int64_t t_ns) const {
 }
 
 Result<Truth> read_truth(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream || std::filesystem::is_directory(file)) return fail("cannot read " + file.string());
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  const auto text = read_file(file, std::numeric_limits<std::uintmax_t>::max());
+  if (!text) return tl::make_unexpected(text.error());
   try {
-    const auto json = parse_json(text);
+    const auto json = parse_json(*text);
     return truth_of(JsonField(json));
   } catch (const JsonFault& fault) {
     return fail(fmt::format("{}: no truth: {}", file.string(), fault.what()));

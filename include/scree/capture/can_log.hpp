@@ -24,17 +24,22 @@ inline constexpr std::size_t kCanLineRefusals = 5;
 
 /// For people.
 inline constexpr std::array<std::string_view, kCanLineRefusals> kCanLineReasons = {
-    "accepted", "not of the form (seconds.fraction) interface frame", "time stamp",
+    "accepted",
+    "not of the form (seconds.fraction) interface frame, as candump -L and candump -ta write it",
+    "time stamp is none of a clock, as candump -L and candump -ta write it",
     "identifier is neither 3 nor 8 hexadecimal digits in its range",
     "data are not whole bytes, or more than a frame holds"};
 
-/// Reads one line as `candump -L` writes it, without its end; any bytes are safe. `interface` is a
-/// part of the line.
+/// Reads one line as `candump -L` or `candump -ta` writes it, without its end; any bytes are safe.
+/// `interface` is a part of the line.
 ///
-/// What it takes (can-utils, lib.h): `123#DEADBEEF` with up to 8 bytes, dots between them allowed,
-/// and a raw length code `_9` behind eight bytes; `123#R` and `123#R4`; CAN FD `123##1DEADBEEF`
-/// with a digit of flags; 8 digits for an extended identifier, and for an error frame, which has
-/// bit 29 set; one to nine digits of a second's fraction; ` R` or ` T`, the direction, at the end.
+/// What it takes of the first (can-utils, lib.h): `123#DEADBEEF` with up to 8 bytes, dots between
+/// them allowed, and a raw length code `_9` behind eight bytes; `123#R` and `123#R4`; CAN FD
+/// `123##1DEADBEEF` with a digit of flags; 8 digits for an extended identifier, and for an error
+/// frame, which has bit 29 set; one to nine digits of a second's fraction; ` R` or ` T`, the
+/// direction, at the end. Of the second: `can0  123   [4]  DE AD BE EF`, with `RX - -` or `TX - -`
+/// behind the interface
+/// (-x), and what it writes behind the bytes.
 CanLineRefusal parse_can_line(std::string_view line, CanFrame& frame, std::string_view& interface);
 
 struct CanLogCounters {
@@ -57,6 +62,7 @@ public:
 private:
   std::ifstream stream_;
   std::array<char, 512> line_{};  ///< twice the longest line that a frame needs
+  bool is_first_ = true;
   CanLogCounters counters_;
 };
 

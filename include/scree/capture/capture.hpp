@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string_view>
 
 #include "scree/core/result.hpp"
 
@@ -17,6 +18,9 @@ Result<std::filesystem::path> imu_file(const std::filesystem::path& capture);
 
 /// The CAN log of a capture: the capture itself when it is a file, else can.log in its folder.
 Result<std::filesystem::path> can_file(const std::filesystem::path& capture);
+
+/// The program that packed a file, as "gzip", by its first bytes; empty: none that is known.
+std::string_view packed_with(const std::filesystem::path& file);
 
 /// The configuration that belongs to a capture: `given` when not empty, else scree.toml in the
 /// capture's folder when there is one. Nothing: the defaults.

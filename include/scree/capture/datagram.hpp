@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -28,6 +29,10 @@ enum class FrameKind : std::uint8_t {
 
 /// The link types that are understood, as libpcap names them (DLT_*).
 bool is_network_link(int link_type);
+
+/// The IPv4 packet in a captured frame of these link types, perhaps with padding behind it.
+std::optional<std::span<const std::uint8_t>> ipv4_packet(int link_type,
+                                                         std::span<const std::uint8_t> frame);
 
 /// Finds the UDP datagram in a captured frame: Ethernet (with VLAN tags), Linux cooked capture v1
 /// and v2, raw IP, BSD loopback; IPv4 with options. `original_size` is the frame's size on the

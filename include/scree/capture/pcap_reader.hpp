@@ -18,20 +18,33 @@ struct PcapRecord {
   std::int64_t arrival_ns = 0;
   std::span<const std::uint8_t> bytes;
   std::size_t original_size = 0;  ///< on the wire; `bytes` may be a part
+  int link_type = 0;              ///< DLT_*: in pcapng each interface has its own
 };
 
 struct FrameCounters {
-  std::uint64_t udp = 0, other = 0, fragments = 0, truncated = 0;
+  std::uint64_t udp = 0, other = 0, truncated = 0;
+  std::uint64_t fragments = 0;  ///< of datagrams of which parts are missing
 };
 
-/// Reads a pcap or pcapng file, of microseconds or nanoseconds, in either byte order. Any bytes are
-/// safe: a file cut or garbled in the middle gives everything before, and then a reason.
+class Fragments;
+class PcapngFile;
+
+/// Whether a file begins as pcapng does.
+bool is_pcapng(const std::filesystem::path& file);
+
+/// Reads a pcap or pcapng file, of microseconds or nanoseconds, in either byte order; fragmented
+/// datagrams are put together. Any bytes are safe: a file cut or garbled in the middle gives
+/// everything before, and then a reason.
 class PcapReader {
 public:
   /// One sentence when there is no such file, or it is empty, or it is no capture file.
   static Result<PcapReader> open(const std::filesystem::path& file);
 
-  /// DLT_*; 147 (DLT_USER0) is a serial stream.
+  PcapReader(PcapReader&&) noexcept;
+  PcapReader& operator=(PcapReader&&) noexcept;
+  ~PcapReader();
+
+  /// DLT_*; 147 (DLT_USER0) is a serial stream. Of a pcapng file that of one of its interfaces.
   int link_type() const { return link_type_; }
 
   /// False at the end.
@@ -49,10 +62,16 @@ private:
     void operator()(pcap* handle) const;
   };
 
-  PcapReader(std::string name, std::unique_ptr<pcap, Close> handle);
+  PcapReader(std::string name, std::unique_ptr<pcap, Close> handle,
+             std::unique_ptr<PcapngFile> pcapng);
+
+  bool next_of_pcapng(PcapRecord& record);
+  FrameKind join(const PcapRecord& record, Datagram& datagram);
 
   std::string name_;
-  std::unique_ptr<pcap, Close> handle_;
+  std::unique_ptr<pcap, Close> handle_;  // one of these two
+  std::unique_ptr<PcapngFile> pcapng_;
+  std::unique_ptr<Fragments> fragments_;
   int link_type_;
   std::string broken_off_;
   FrameCounters frames_;

@@ -114,8 +114,13 @@ struct EncoderSettings {
   // No keys: what only a DBC file says, filled in by encoder::with_dbc().
   bool is_extended = false;       ///< 29 bits although can_id is not above 0x7FF
   double factor = 1, offset = 0;  ///< scale multiplies raw * factor + offset
+  bool is_float = false;          ///< raw holds the bits of a float (length 32) or a double (64)
+  bool any_source = false;        ///< J1939: can_id stands for its parameter group from any source
 
   bool has_extended_id() const { return is_extended || can_id > 0x7FF; }
+  /// The bits of an identifier that must agree with can_id: from any source those of the parameter
+  /// group (SAE J1939-21: neither the priority nor the source).
+  std::uint32_t id_mask() const { return any_source ? 0x03FFFF00U : 0x1FFFFFFFU; }
   /// Bytes that a frame must have to hold the signal.
   int frame_bytes() const {
     if (byte_order == ByteOrder::little_endian) return (start_bit + length + 7) / 8;

@@ -22,6 +22,15 @@ TEST(RunningConfig, ABadFileLeavesTheOldSettings) {
   EXPECT_FALSE(config->reread()) << "the DBC file is not there";
   EXPECT_EQ(config->settings().stop.length, 3.0);
 
+  folder.write("cut.dbc", "BO_ 416 M: 8 X\n SG_ S : 0|8@1+ (1,");
+  write("[encoder]\ndbc = \"cut.dbc\"\nsignal = \"M.S\"\nscale = 1.0\n[stop]\nlength = 9.0\n");
+  EXPECT_FALSE(config->reread()) << "the DBC file breaks off";
+  EXPECT_EQ(config->settings().stop.length, 3.0);
+
+  write("[stop]\nlength = 9.0\n[lcm]\nurl = \"udpm://127.0.0.1:7667\"\n");
+  EXPECT_FALSE(config->reread()) << "no start would take that url";
+  EXPECT_EQ(config->settings().stop.length, 3.0);
+
   write("[stop]\nlength = 5.0\n[track]\nreach = 4.0\n[map]\nwait = 0.1\n[lidar]\nport = 5000\n");
   EXPECT_TRUE(config->reread());
   EXPECT_EQ(config->settings().stop.length, 5.0);

@@ -68,6 +68,29 @@ TEST(CanLine, ReadsErrorAndRemoteFrames) {
   EXPECT_TRUE(frame_of("(1.0) can0 1A0#R").is_remote);
 }
 
+TEST(CanLine, ReadsWhatCandumpWritesForPeople) {
+  CanFrame frame;
+  std::string_view interface;
+  ASSERT_EQ(parse_can_line(" (1598612522.753742)  can0  1A0   [4]  A0 86 01 00", frame, interface),
+            CanLineRefusal::none);
+  EXPECT_EQ(interface, "can0");
+  EXPECT_EQ(frame.t_ns, 1'598'612'522'753'742'000);
+  EXPECT_EQ(frame.id, 0x1A0U);
+  EXPECT_THAT(data_of(frame), ElementsAre(0xA0, 0x86, 1, 0));
+  EXPECT_THAT(data_of(frame_of(" (1.0)  can0  18FF50E5   [2]  01 23   '.#'")),
+              ElementsAre(1, 0x23));
+  EXPECT_THAT(data_of(frame_of(" (1.0)  can0  TX - -  1A0   [1]  07\r")), ElementsAre(7));
+  EXPECT_TRUE(frame_of(" (1.0)  can0  1A0   [4]  remote request").is_remote);
+  EXPECT_TRUE(frame_of(" (1.0)  can0  20000040   [1]  00   ERRORFRAME").is_error);
+  EXPECT_EQ(frame_of(" (1.0)  can0  1A0  [00] ").size, 0);
+  EXPECT_EQ(refusal_of(" (1.0)  can0  1A0   [4]  A0 86 01"), CanLineRefusal::data);
+  EXPECT_EQ(refusal_of(" (1.0)  can0  1A0   [99]  A0"), CanLineRefusal::data);
+  EXPECT_EQ(refusal_of(" (1.0)  can0  1A0   [2]  A0 8"), CanLineRefusal::data);
+  EXPECT_EQ(refusal_of(" (1.0)  can0  1A0   A0 86"), CanLineRefusal::form);
+  EXPECT_EQ(refusal_of("  can0  1A0   [1]  A0"), CanLineRefusal::form) << "without a time";
+  EXPECT_EQ(refusal_of(" (2020-08-28 11:02:02.753742)  can0  1A0   [1]  A0"), CanLineRefusal::time);
+}
+
 TEST(CanLine, ReadsFdFrames) {
   std::string line = "(1.0) can0 1A0##3";
   for (int i = 0; i < 64; ++i) line += "5A";

@@ -37,7 +37,7 @@ PointCloud sample(std::size_t size) {
   PointCloud cloud(size);
   for (std::size_t i = 0; i < size; ++i) {
     const float f = static_cast<float>(i);
-    cloud.push_back(0.1F * f, -f, std::sin(f), static_cast<float>(i % 256));
+    cloud.push_back(0.1F * f, -0.2F * f, std::sin(f), static_cast<float>(i % 256));
   }
   return cloud;
 }
@@ -132,8 +132,8 @@ TEST(Pcd, EveryBadFileIsOneSentence) {
   const auto xyz = [](const std::string& points, const std::string& data) {
     return header("x y z", "4 4 4", "F F F", points, data);
   };
-  EXPECT_THAT(read_pcd("/nonexistent/cloud.pcd").error().message, HasSubstr("no such file"));
-  EXPECT_THAT(read_pcd("/tmp").error().message, HasSubstr("cannot be read"));
+  EXPECT_THAT(read_pcd("/nonexistent/cloud.pcd").error().message, HasSubstr("No such file"));
+  EXPECT_THAT(read_pcd("/tmp").error().message, HasSubstr("it is a folder"));
   EXPECT_THAT(error_of(""), HasSubstr("bad.pcd: is not a PCD file"));
   EXPECT_THAT(error_of("%PDF-1.7\nthis and that\n"), HasSubstr("is not a PCD file"));
   EXPECT_THAT(error_of("VERSION 0.7\nFIELDS x y"), HasSubstr("no DATA line"));
@@ -142,7 +142,8 @@ TEST(Pcd, EveryBadFileIsOneSentence) {
   EXPECT_THAT(error_of(xyz("4000000000", "binary") + point), HasSubstr("bad WIDTH"));
   EXPECT_THAT(error_of(xyz("2000000000", "binary") + point), HasSubstr("is cut"));
   EXPECT_THAT(error_of(xyz("2000000000", "ascii") + "1 2 3\n"), HasSubstr("is cut"));
-  EXPECT_THAT(error_of(xyz("3", "ascii") + "1 2 3\n 4 5 6 \n"), HasSubstr("bad.pcd: "));
+  EXPECT_THAT(error_of(xyz("3", "ascii") + "1.00 2.00 3.00\n 4.00 5.00 6.00 \n"),
+              HasSubstr("bad.pcd: is cut: 2 of 3 points"));
   EXPECT_THAT(error_of(xyz("-1", "binary") + point), HasSubstr("bad WIDTH"));
   EXPECT_THAT(error_of(xyz("1", "hexadecimal") + point), HasSubstr("DATA"));
   EXPECT_THAT(error_of(header("x y", "4 4", "F F", "1", "binary") + point),
@@ -157,6 +158,41 @@ TEST(Pcd, EveryBadFileIsOneSentence) {
               HasSubstr("compressed data of another size"));
   EXPECT_THAT(error_of(xyz("1", "binary_compressed") + packed(4U, 12U, 0xFFFFFFFFU)),
               HasSubstr("points that cannot be read"));
+}
+
+TEST(Pcd, TakesTheOriginOffInDoubleWhereACloudLiesFarFromIt) {
+  const TemporaryFolder folder;
+  const auto at = [&](double x, double y, double z) {
+    return read_pcd(
+        folder.write("far.pcd",
+                     "VERSION 0.7\nFIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nWIDTH 3\nHEIGHT 1\n"
+                     "VIEWPOINT 403000.5 5589000.25 1651 1 0 0 0\nPOINTS 3\nDATA binary\n" +
+                         packed(x, y, z, x + 0.125, y, z, 1e300, std::nan(""), z)));
+  };
+  const auto far = at(403001.25, 5589001.5, 1650.5);
+  ASSERT_TRUE(far) << far.error().message;
+  EXPECT_EQ(far->origin, Eigen::Vector3d(403001, 5589002, 1651));
+  EXPECT_EQ(far->x[0], 0.25F);
+  EXPECT_EQ(far->x[1], 0.375F);
+  EXPECT_EQ(far->y[0], -0.5F);
+  EXPECT_EQ(far->z[0], -0.5F);
+  EXPECT_EQ(far->viewpoint, Eigen::Vector3f(-0.5F, -1.75F, 0));
+  EXPECT_EQ(at(90, -90, 1)->origin, Eigen::Vector3d::Zero());
+}
+
+TEST(Pcd, IsKnownByItsFirstWords) {
+  const TemporaryFolder folder;
+  EXPECT_TRUE(is_pcd(folder.write("a", header("x y z", "4 4 4", "F F F", "0", "ascii"))));
+  EXPECT_TRUE(is_pcd(folder.write("b", "\xEF\xBB\xBFVERSION 0.7\n")));
+  EXPECT_FALSE(is_pcd(folder.write("c.pcd", "\xD4\xC3\xB2\xA1")));
+  EXPECT_FALSE(is_pcd(folder / "none.pcd"));
+}
+
+TEST(Pcd, WhatCannotBeWrittenIsSaid) {
+  EXPECT_THAT(write_pcd("/dev/full", sample(10)).error().message,
+              HasSubstr("cannot write /dev/full"));
+  EXPECT_THAT(write_pcd("/nonexistent/a.pcd", sample(10)).error().message,
+              HasSubstr("cannot write"));
 }
 
 TEST(Pcd, SurvivesGarbledFiles) {

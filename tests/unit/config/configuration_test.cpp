@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "unit/temporary_folder.hpp"
 
@@ -65,6 +66,15 @@ TEST_F(ConfigurationTest, AFileThatAKeyNamesMustBeThere) {
   EXPECT_EQ(error_of(folder_ / "scree.toml"), "no error");
 }
 
+TEST_F(ConfigurationTest, OnlyRegularFilesOfAPlausibleSizeAreRead) {
+  EXPECT_THAT(error_of("/dev/zero"), HasSubstr("cannot read /dev/zero: it is no regular file"));
+  const auto fifo = folder_ / "fifo.toml";
+  ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
+  EXPECT_THAT(error_of(fifo), HasSubstr("fifo.toml: it is no regular file"));
+  EXPECT_THAT(error_of(folder_.path()), HasSubstr("it is a folder"));
+  EXPECT_THAT(error_of(write(std::string((1 << 20) + 1, '\n'))), HasSubstr("longer than"));
+}
+
 TEST_F(ConfigurationTest, EffectiveTextReadsBackToTheSameText) {
   const auto file = write("[lidar]\nport = 4000\nmodel = \"puck_lite\"\n[stop]\nlength = 4.5\n");
   folder_.write("scree.d/robot.toml", "[encoder]\ncan_id = 0x18FF1234\n");
@@ -82,6 +92,21 @@ TEST_F(ConfigurationTest, EffectiveTextReadsBackToTheSameText) {
     ASSERT_TRUE(again) << again.error().message;
     EXPECT_EQ(toml_values(*again), toml_values(read->settings));
   }
+}
+
+TEST_F(ConfigurationTest, StringsAreEscapedSoThatTheyReadBack) {
+  std::filesystem::create_directory(folder_ / "a\nb");
+  const auto file = folder_.write("a\nb/scree.toml",
+                                  "[imu]\ndevice = \"/dev/a\\\"b\\\\c\\u0001\"\n"
+                                  "[lcm]\nurl = \"a\\nb\\té\"\n[encoder]\ninterface = 'a\"\\'\n");
+  const auto read = read_configuration(file);
+  ASSERT_TRUE(read) << read.error().message;
+  const std::string text = effective_toml(*read, Shown::set);
+  const auto again = parse_settings(text, "again");
+  ASSERT_TRUE(again) << again.error().message << text;
+  EXPECT_EQ(again->imu.device, "/dev/a\"b\\c\x01");
+  EXPECT_EQ(again->lcm.url, "a\nb\té");
+  EXPECT_EQ(again->encoder.interface, "a\"\\");
 }
 
 TEST_F(ConfigurationTest, AProfileBesideTheFileIsReadInsteadOfTheShippedOne) {

@@ -77,6 +77,33 @@ TEST(Settings, MistakesNameFileLineKeyAndWhatIsAccepted) {
               AllOf(HasSubstr("robot.toml:3"), HasSubstr("port")));
 }
 
+TEST(Settings, KeysAreComparedByTheirPath) {
+  EXPECT_THAT(error_of("\"lidar.port\" = 3368\n"),
+              AllOf(HasSubstr("robot.toml:1: \"lidar.port\" is not a setting"),
+                    HasSubstr("the nearest is lidar.port")));
+  EXPECT_THAT(error_of("[detect]\n\"map.leaf_size\" = 0.2\n"),
+              HasSubstr("robot.toml:2: detect.\"map.leaf_size\" is not a setting"));
+  EXPECT_THAT(error_of("[lidar]\n\"port\\u0000x\" = 3368\n"),
+              HasSubstr("robot.toml:2: lidar.\"port\\u0000x\" is not a setting"));
+  EXPECT_THAT(error_of("[lidar]\n\"\" = 1\n"), HasSubstr("lidar.\"\" is not a setting"));
+  EXPECT_EQ(error_of("[lidar]\n\"port\" = 3368\n"), "no error");
+}
+
+TEST(Settings, DepthAndLengthOfKeysAreBounded) {
+  const auto times = [](std::size_t n, std::string_view text) {
+    std::string all;
+    for (std::size_t i = 0; i < n; ++i) all += text;
+    return all;
+  };
+  EXPECT_THAT(error_of("[lidar]\n" + times(40000, "a.") + "a = 1\n"),
+              HasSubstr("robot.toml:2: the line has 80005 characters, 1000 are the most"));
+  EXPECT_THAT(error_of(std::string(200000, 'a') + " = 1"), HasSubstr("robot.toml:1: the line"));
+  EXPECT_THAT(error_of(times(400, "a.") + "a = 1"), HasSubstr("a is not a setting"));
+  EXPECT_THAT(error_of("x = [\n" + times(9, "{" + times(400, "a.") + "a = [\n")),
+              HasSubstr("nested value depth"));
+  EXPECT_THAT(error_of(times(100000, "[[a]]\nb = 1\n")), HasSubstr("a is not a setting"));
+}
+
 TEST(Settings, ContradictionsOfTheEncoderAreOneSentence) {
   EXPECT_THAT(error_of("[encoder]\nstart_bit = 500\n"), HasSubstr("beyond the 64 bytes"));
   EXPECT_THAT(error_of("[encoder]\nstart_bit = 487\nbyte_order = \"big_endian\"\n"), "no error");

@@ -210,5 +210,23 @@ TEST_F(BeamGridTest, TakesPointsThatAreNoNumbers) {
                                                  beams_[rock[2]].ended));
 }
 
+TEST_F(BeamGridTest, PointsThatFoundNoRoomMayLieBeyondTheRaster) {
+  PointCloud few(100);
+  for (std::size_t i = 0; i < few.capacity(); ++i) {
+    few.push_back(0.1F * static_cast<float>(i % 10), 0.1F * static_cast<float>(i / 10), 0, 0);
+  }
+  surface_.build(few, {.cell_size = kCell,
+                       .cell_points = 1,
+                       .max_slope = 0.34F,
+                       .tolerance = 0.1F,
+                       .trend_reach = 0});
+  beam_grid_.build(cloud_, beams_, surface_, kLowest, kHighest);
+  for (std::size_t cell = 0; cell < cells(); ++cell) {
+    if (!surface_.has_neighbours(cell)) {
+      EXPECT_EQ(beam_grid_.ended(cell), 0);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace scree

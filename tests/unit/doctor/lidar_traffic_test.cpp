@@ -70,5 +70,14 @@ TEST_F(LidarTrafficTest, TheWireShowsWhereThePacketsGo) {
   }
 }
 
+TEST_F(LidarTrafficTest, TwoSensorsOnOnePortAreNamed) {
+  hear(1206);
+  traffic_.heard[{kSensor + 1, 0, 2368, 1206}] = 1500;
+  EXPECT_THAT(wrong(), AllOf(HasSubstr("from 192.168.1.201 and from 192.168.1.202"),
+                             HasSubstr("lidar.sender")));
+  lidar_.sender = "192.168.1.202";
+  EXPECT_THAT(check_lidar_traffic(lidar_, traffic_).text, HasSubstr("from 192.168.1.202"));
+}
+
 }  // namespace
 }  // namespace scree

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <spdlog/fmt/fmt.h>
 
 #include <random>
 
@@ -26,6 +27,7 @@ BO_ 2566869221 Drive: 8 Vector__XXX
  SG_ Ticks : 12|20@1- (1,0) [0|0] "" Vector__XXX
  SG_ Way : 32 | 32 @1+ ( +0.5 , 1.5 ) [0|0] "m" A,B
  SG_ Real : 0|32@1- (1,0) [0|0] "m/s" A
+ SG_ Short : 0|16@1- (1,0) [0|0] "m/s" A
  SG_ Mode M : 0|4@1+ (1,0) [0|0] "" A
  SG_ Hidden m3 : 8|16@1+ (1,0) [0|0] "" A
  SG_ Both m2M : 8|16@1+ (1,0) [0|0] "" A
@@ -42,6 +44,7 @@ BO_ 1 AFTER: 8 A
  SG_ Late : 0|8@1+ (1,0) [0|0] "" A
 SIG_VALTYPE_ 2566869221 Real : 1;
 SIG_VALTYPE_ 464 FRONT_LEFT : 0;
+SIG_VALTYPE_ 2566869221 Short : 1;
 )";
 
 DbcSignal signal_of(std::string_view name) {
@@ -92,7 +95,7 @@ TEST(Dbc, LineEndsOfDosChangeNothing) {
 TEST(Dbc, SaysWhyASignalCannotBeUsed) {
   EXPECT_THAT(error_of("Drive.Hidden"), HasSubstr("multiplexed"));
   EXPECT_THAT(error_of("Drive.Both"), HasSubstr("multiplexed"));
-  EXPECT_THAT(error_of("Drive.Real"), HasSubstr("floating-point"));
+  EXPECT_THAT(error_of("Drive.Short"), HasSubstr("has 16 bits, and is to be a floating-point"));
   EXPECT_THAT(error_of("Drive.Long"), HasSubstr("64 bits"));
   EXPECT_THAT(error_of("Drive.Outside"), HasSubstr("outside of any frame"));
   EXPECT_THAT(error_of("Drive.Flat"), HasSubstr("factor"));
@@ -111,6 +114,68 @@ TEST(Dbc, NamesWhatIsNearAMistypedName) {
   EXPECT_THAT(error_of("IN_A_COMMENT.Ghost"),
               AllOf(HasSubstr("no message"), Not(HasSubstr("Ghost"))));
   EXPECT_THAT(error_of("A.B", "not a file of that kind"), HasSubstr("no DBC file"));
+}
+
+TEST(Dbc, ATextThatBreaksOffNamesTheLineAndWhatItLacks) {
+  const std::string_view line = " SG_ S : 0|8@1+ (1,0) [0|0] \"m/s\"";
+  for (const auto& [length, lacks] : {std::pair{9, "a number"},
+                                      {12, "a '@'"},
+                                      {19, "a number"},
+                                      {20, "a ')'"},
+                                      {31, "a text in quotes"}}) {
+    const std::string text = "BO_ 416 M: 8 X\n\n" + std::string(line.substr(0, length));
+    EXPECT_THAT(error_of("M.S", std::string_view(text)),
+                AllOf(HasSubstr("robot.dbc:3: M.S cannot be read, it lacks "), HasSubstr(lacks)));
+  }
+  EXPECT_THAT(
+      error_of("M.S", "BO_ 1 M: 8 X\nBO_ 2 Other-Name: 8 X\n SG_ S : 0|8@1+ (1,0) [0|0] \"\""),
+      HasSubstr("robot.dbc:2: the line cannot be read, it lacks a ':'"))
+      << "its signals are not those of the message before";
+  for (const char* quotes : {"", " \"km/h\"", " \"km/h", "\n\"\"\n\""}) {
+    const std::string text =
+        "VERSION \"\"\nCM_ \"from C:\\\";\nBO_ 1 M: 8 X\n" + std::string(quotes) + "\n";
+    EXPECT_THAT(error_of("M.S", std::string_view(text)),
+                HasSubstr("robot.dbc:2: the text in quotes that begins here has no end"));
+  }
+}
+
+TEST(Dbc, FloatingPointSignalsAreRead) {
+  EXPECT_TRUE(signal_of("Drive.Real").is_float);
+  EXPECT_FALSE(signal_of("WHEEL_SPEEDS.FRONT_LEFT").is_float);
+}
+
+TEST(Dbc, LongNamesAreThoseThatEveryToolShows) {
+  constexpr std::string_view kLong =
+      "BO_ 2 SHORT_0001: 8 X\n SG_ S_0003 : 8|8@1- (1,0) [0|0] \"\" X\n"
+      "BO_ 3 SHORT_0002: 8 X\n SG_ S_0003 : 16|8@1- (1,0) [0|0] \"\" X\n"
+      "BA_ \"SystemMessageLongSymbol\" BO_ 2 \"MessageOfMoreThan32Characters\";\n"
+      "BA_ \"SystemSignalLongSymbol\" SG_ 2 S_0003 \"SignalOfMoreThan32Characters\";\n";
+  for (const char* name : {"MessageOfMoreThan32Characters.SignalOfMoreThan32Characters",
+                           "SHORT_0001.S_0003", "SHORT_0001.SignalOfMoreThan32Characters"}) {
+    const auto signal = find_signal(kLong, name, "robot.dbc");
+    ASSERT_TRUE(signal) << signal.error().message;
+    EXPECT_EQ(signal->start_bit, 8);
+  }
+  EXPECT_THAT(error_of("SHORT_0001.Nothing", kLong),
+              HasSubstr("the nearest are SignalOfMoreThan32Characters"));
+  EXPECT_EQ(find_signal(kLong, "SHORT_0002.S_0003", "robot.dbc")->start_bit, 16);
+}
+
+TEST(Dbc, TextsOfOtherProgramsAreReadOrNamed) {
+  const std::string line = " SG_ Speed_\xC3\xBC : 0|16@1+ (0.01,0) [0|655] \"km/h\" X";
+  const std::string other = " SG_ Other : 16|16@1+ (1,0) [0|1] \"say SG_ no\" X";
+  const auto found = find_signal(
+      "\xEF\xBB\xBF"
+      "BO_ 1 M: 8 X" +
+          other + line + " BO_ 2 N: 8 X" + other + "\n",
+      "M.Speed_\xC3\xBC", "robot.dbc");
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_EQ(found->unit, "km/h");
+  EXPECT_EQ(found->id, 1U);
+  EXPECT_THAT(error_of("M.S", std::string_view("\xFF\xFE"
+                                               "B\0O\0",
+                                               6)),
+              HasSubstr("save it as UTF-8"));
 }
 
 TEST(Dbc, AnyBytesAreSafe) {
@@ -167,6 +232,41 @@ TEST(WithDbc, AScaleThatCannotBeForTheUnitIsRefused) {
   EXPECT_THAT(error(left, EncoderKind::counter, 0.277778), HasSubstr("encoder.kind is counter"));
   EXPECT_THAT(error("Drive.Way", EncoderKind::counter, 0.000157), HasSubstr("1 m is 1 m"));
   EXPECT_EQ(error("Drive.Ticks", EncoderKind::counter, 0.000157), "no error");
+}
+
+TEST(WithDbc, UnitsAreComparedWithoutCaseAndBlanks) {
+  const TemporaryFolder folder;
+  for (const char* unit : {"KPH", "Kph", "Km/h", "km / h"}) {
+    folder.write("robot.dbc",
+                 fmt::format("BO_ 1 M: 8 X\n SG_ S : 0|16@1+ (0.01,0) [0|1] \"{}\" X\n", unit));
+    const auto filled = with_dbc(settings_for("M.S", EncoderKind::speed, 1), folder / "robot.toml");
+    ASSERT_FALSE(filled) << unit;
+    EXPECT_THAT(filled.error().message, HasSubstr("is 0.277778 m/s"));
+  }
+}
+
+TEST(WithDbc, AFloatingPointNumberCanOnlyBeASpeed) {
+  const TemporaryFolder folder;
+  folder.write("robot.dbc", kDbc);
+  const auto speed =
+      with_dbc(settings_for("Drive.Real", EncoderKind::speed, 1), folder / "robot.toml");
+  ASSERT_TRUE(speed) << speed.error().message;
+  EXPECT_TRUE(speed->is_float);
+  EXPECT_THAT(with_dbc(settings_for("Drive.Real", EncoderKind::counter, 1), folder / "robot.toml")
+                  .error()
+                  .message,
+              HasSubstr("only a speed can be one"));
+}
+
+TEST(WithDbc, TheNullAddressOfJ1939StandsForAnySource) {
+  const TemporaryFolder folder;
+  folder.write("robot.dbc", "BO_ 2566832126 EBC2: 8 X\n SG_ S : 0|16@1+ (1,0) [0|1] \"m/s\" X\n");
+  const auto filled =
+      with_dbc(settings_for("EBC2.S", EncoderKind::speed, 1), folder / "robot.toml");
+  ASSERT_TRUE(filled) << filled.error().message;
+  EXPECT_TRUE(filled->any_source);
+  EXPECT_EQ(0x18FEBFFE & filled->id_mask(), 0x0CFEBF0B & filled->id_mask());
+  EXPECT_NE(0x18FEBFFE & filled->id_mask(), 0x18FEC00B & filled->id_mask());
 }
 
 TEST(WithDbc, AMissingFileIsOneSentence) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <set>
 #include <tuple>
 #include <vector>
@@ -45,6 +46,39 @@ TEST(EncoderStream, TakesItsFramesAndCountsTheOthers) {
   EXPECT_EQ(stream.counters().other, 2U);
   EXPECT_EQ(stream.counters().accepted, 2U);
   EXPECT_EQ(stream.counters().all_refused(), 0U);
+}
+
+TEST(EncoderStream, OfAParameterGroupFromAnySourceTheFirstIsTaken) {
+  EncoderSettings settings;
+  settings.can_id = 0x18FEBFFE;
+  settings.any_source = true;
+  EncoderStream stream(settings, {});
+  std::int64_t t_ns = 0;
+  for (const std::uint32_t id : {0x18FEC00BU, 0x0CFEBF0BU, 0x18FEBF22U, 0x0CFEBF0BU}) {
+    CanFrame frame = frame_of(t_ns += 10'000'000, id, 1);
+    frame.is_extended = true;
+    stream.take(frame);
+  }
+  EXPECT_EQ(stream.counters().accepted, 2U);
+  EXPECT_EQ(stream.counters().other, 2U);
+}
+
+TEST(EncoderStream, ASpeedMayBeAFloatingPointNumber) {
+  EncoderSettings settings;
+  settings.kind = EncoderKind::speed;
+  settings.is_float = true;
+  settings.scale = 0.5;
+  std::vector<EncoderSample> samples;
+  EncoderStream stream(settings, [&](const EncoderSample& sample) { samples.push_back(sample); });
+  std::int64_t t_ns = 0;
+  for (const float speed : {1.5F, std::nanf(""), HUGE_VALF, -1e30F, 1.5F}) {
+    CanFrame frame = frame_of(t_ns += 10'000'000, 0x1A0, 0);
+    std::memcpy(frame.data.data(), &speed, sizeof speed);
+    stream.take(frame);
+  }
+  ASSERT_EQ(samples.size(), 2U);
+  EXPECT_EQ(samples[1].value, 0.75);
+  EXPECT_EQ(refused(stream, Refusal::implausible), 3U);
 }
 
 TEST(EncoderStream, AnIdentifierAbove7FFIsExtended) {

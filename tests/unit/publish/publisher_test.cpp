@@ -219,6 +219,15 @@ TEST(Multicast, AUrlWithoutGroupOrPortIsExplained) {
   }
 }
 
+TEST(Multicast, TheTextOfAUrlIsCheckedWithoutARoute) {
+  for (const char* url : {"udpm://239.1.2.3:7667?ttl=0", "tcpq://robot:7700", "memq://"}) {
+    EXPECT_TRUE(check_lcm_url(url)) << url;
+  }
+  for (const char* url : {"", "pigeon://coop", "udpm://127.0.0.1:7667", "a\nb"}) {
+    EXPECT_FALSE(check_lcm_url(url)) << url;
+  }
+}
+
 TEST(Publisher, AnUnknownProviderIsRefused) {
   const auto publisher = Publisher::open("pigeon://coop", 1);
   ASSERT_FALSE(publisher);

@@ -173,6 +173,31 @@ TEST_F(SyncBufferTest, RefusesWhatIsOldOrNoNumber) {
   EXPECT_EQ(buffer_->dropped(), 0U);
 }
 
+TEST_F(SyncBufferTest, RefusesWhatNoSensorCanHaveMeasured) {
+  put_until(0, 100 * kMillisecond);
+  constexpr auto kEarliest = std::numeric_limits<std::int64_t>::min(),
+                 kLatest = std::numeric_limits<std::int64_t>::max();
+  for (const double distance : {1e308, -1e308, 1e12, 100.0, -100.0}) {
+    buffer_->put(rolled(100 * kMillisecond, distance));
+  }
+  for (const std::int64_t t : {kEarliest, kLatest}) {
+    EncoderSample wheel = rolled(0, 0.1);
+    wheel.t_ns = t;
+    buffer_->put(wheel);
+    ImuSample imu = turning(0, {0, 0, 1});
+    imu.t_ns = t;
+    buffer_->put(imu);
+  }
+  buffer_->put(turning(100 * kMillisecond, {0, 0, 1e308}));
+  buffer_->gather();
+  EXPECT_EQ(buffer_->late(), 10U);
+  EXPECT_EQ(buffer_->wheel().size(), 10U);
+  buffer_->put(rolled(100 * kMillisecond, 0.1));
+  buffer_->put(rolled(900 * kMillisecond, 500));
+  buffer_->gather();
+  EXPECT_EQ(buffer_->wheel().size(), 12U) << "after silence the wheel begins anew";
+}
+
 TEST_F(SyncBufferTest, GoesOnWhenTheClockWasSetBackOrASampleCameFromTheFuture) {
   put_until(0, kSecond);
   put_until(-3600 * kSecond, -3599 * kSecond);

@@ -105,6 +105,12 @@ TEST(TopPage, CallsAnEdgeByItsName) {
   EXPECT_THAT(text_of(top_page(view, 30, 120), 30, 120), HasSubstr("4     edge    6.00   90 R"));
 }
 
+TEST(TopPage, CountsMalformedMessages) {
+  TopView view = driving();
+  view.refused = 3;
+  EXPECT_THAT(text_of(top_page(view, 30, 120), 30, 120), HasSubstr("3 messages are malformed"));
+}
+
 TEST(TopPage, SaysWhenNobodyPublishes) {
   TopView view;
   view.url = "udpm://239.255.76.67:7667?ttl=0";

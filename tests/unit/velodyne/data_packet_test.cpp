@@ -236,7 +236,9 @@ TEST(CheckDataPacket, NamesEveryReason) {
     EXPECT_EQ(check(PacketBuilder().azimuth(block, 65535)), Refusal::azimuth);
   }
   EXPECT_EQ(check(PacketBuilder().timestamp(3'599'999'999)), Refusal::none);
-  EXPECT_EQ(check(PacketBuilder().timestamp(3'600'000'000)), Refusal::timestamp);
+  EXPECT_EQ(check(PacketBuilder().timestamp(3'600'060'000)), Refusal::none);
+  EXPECT_EQ(timestamp_us(PacketBuilder().timestamp(3'600'060'000).bytes()), 60'000U);
+  EXPECT_EQ(check(PacketBuilder().timestamp(3'601'000'000)), Refusal::timestamp);
   for (int byte = 0; byte < 256; ++byte) {
     const bool mode_known = byte == 0x37 || byte == 0x38 || byte == 0x39;
     EXPECT_EQ(check(PacketBuilder().mode(static_cast<ReturnMode>(byte))),

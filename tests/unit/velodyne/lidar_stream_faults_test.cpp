@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include "scree/core/nanoseconds.hpp"
 #include "turning_sensor.hpp"
@@ -36,15 +39,69 @@ TEST(LidarStreamFaults, CountsLossDuplicatesAndLatePackets) {
   for (int i = 0; i < 100; ++i) sensor.send();
   const PacketBuilder overtaken = sensor.packet();
   sensor.skip();
-  for (int i = 0; i < 3; ++i) sensor.skip();
+  for (int i = 0; i < 9; ++i) sensor.skip();
   const PacketBuilder next = sensor.packet();
   sensor.send(next);
-  EXPECT_EQ(sensor.counters().lost, 4U);
+  EXPECT_EQ(sensor.counters().lost, 10U) << "too many to wait for";
   sensor.stream().take(next.bytes(), kEpoch + sensor.elapsed_ns());
   sensor.stream().take(overtaken.bytes(), kEpoch + sensor.elapsed_ns());
   EXPECT_EQ(sensor.refused(Refusal::duplicate), 1U);
   EXPECT_EQ(sensor.refused(Refusal::late), 1U);
   EXPECT_EQ(sensor.counters().accepted, 101U);
+}
+
+TEST(LidarStreamFaults, PacketsThatOvertookOthersArePutInOrder) {
+  std::mt19937 random(4);
+  TurningSensor sensor;
+  std::vector<std::pair<PacketBuilder, std::int64_t>> sent;
+  for (int i = 0; i < 3000; ++i) {
+    sent.emplace_back(sensor.packet(), sensor.elapsed_ns() + sensor.duration());
+    sensor.skip();
+  }
+  // One in ten comes three packets early.
+  for (std::size_t i = 10; i < sent.size(); ++i) {
+    if (random() % 10 != 0) continue;
+    std::rotate(sent.begin() + static_cast<std::ptrdiff_t>(i) - 3,
+                sent.begin() + static_cast<std::ptrdiff_t>(i),
+                sent.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+    for (std::size_t j = i - 3; j <= i; ++j) {
+      sent[j].second = static_cast<std::int64_t>(j + 1) * sensor.duration();
+    }
+  }
+  for (const auto& [packet, sent_ns] : sent) {
+    sensor.stream().take(packet.bytes(), kEpoch + sent_ns + sensor.delay_ns);
+  }
+  sensor.stream().flush();
+  EXPECT_EQ(sensor.counters().accepted, 3000U);
+  EXPECT_EQ(sensor.counters().lost + sensor.counters().all_refused(), 0U);
+  EXPECT_EQ(sensor.counters().device_restarts + sensor.counters().host_steps, 0U);
+}
+
+TEST(LidarStreamFaults, WhatIsLostIsCountedOnceTheOthersHaveWaited) {
+  TurningSensor sensor;
+  for (int i = 0; i < 100; ++i) sensor.send();
+  sensor.skip();
+  const PacketBuilder early = sensor.packet();
+  sensor.send(early);
+  EXPECT_EQ(sensor.counters().accepted, 100U) << "it waits for the one before it";
+  sensor.stream().take(early.bytes(), kEpoch + sensor.elapsed_ns());
+  EXPECT_EQ(sensor.refused(Refusal::duplicate), 1U);
+  for (int i = 0; i < 6; ++i) sensor.send();
+  EXPECT_EQ(sensor.counters().accepted, 107U);
+  EXPECT_EQ(sensor.counters().lost, 1U);
+}
+
+TEST(LidarStreamFaults, StampsJustPastTheHourAreTakenModuloTheHour) {
+  TurningSensor sensor;
+  sensor.stamp_at_start_ns = kHourNs - kSecond / 2;
+  for (int i = 0; i < 700; ++i) {
+    PacketBuilder packet = sensor.packet();
+    const std::uint32_t stamp = timestamp_us(packet.bytes());
+    if (stamp < 60'000) packet.timestamp(kHourUs + stamp);
+    sensor.send(packet);
+  }
+  EXPECT_EQ(sensor.counters().accepted, 700U);
+  EXPECT_EQ(sensor.counters().lost + sensor.counters().all_refused(), 0U);
 }
 
 TEST(LidarStreamFaults, AFieldOfViewSetInTheSensorIsNoLoss) {
@@ -107,7 +164,7 @@ TEST(LidarStreamFaults, EarlyFirmwareLosesNothing) {
     sensor.product = Product::hdl32e;
     sensor.mode = mode;
     sensor.send();
-    for (int i = 0; i < 3; ++i) sensor.skip();  // with packets lost in between nothing is decided
+    for (int i = 0; i < 9; ++i) sensor.skip();  // with packets lost in between nothing is decided
     sensor.send();
     EXPECT_EQ(sensor.counters().accepted, 0U);
     EXPECT_EQ(sensor.stream().firmware(), Firmware::undecided);
@@ -116,7 +173,7 @@ TEST(LidarStreamFaults, EarlyFirmwareLosesNothing) {
     EXPECT_EQ(sensor.counters().accepted, 3U);
     sensor.send_for(0.5);
     EXPECT_EQ(sensor.counters().all_refused(), 0U);
-    EXPECT_EQ(sensor.counters().lost, 3U);
+    EXPECT_EQ(sensor.counters().lost, 9U);
     EXPECT_FALSE(sentence(sensor.stream().firmware()).empty());
   }
 }

@@ -1,4 +1,3 @@
-#include <spdlog/fmt/chrono.h>
 #include <spdlog/fmt/fmt.h>
 
 #include <array>
@@ -9,6 +8,7 @@
 #include <string>
 
 #include "commands.hpp"
+#include "common/time_span.hpp"
 #include "read/lidar_capture.hpp"
 #include "scree/core/ipv4.hpp"
 #include "scree/drivers/velodyne/position_packet.hpp"
@@ -69,11 +69,6 @@ private:
 double rounded(double value, int digits) {
   const double scale = std::pow(10.0, digits);
   return std::round(value * scale) / scale;
-}
-
-std::string utc(std::int64_t time_ns) {
-  return fmt::format("{:%Y-%m-%d %H:%M:%S} UTC",
-                     fmt::gmtime(static_cast<std::time_t>(time_ns / 1'000'000'000)));
 }
 
 Json ports_json(const LidarCapture& capture) {
@@ -145,6 +140,7 @@ Json describe(const LidarCapture& capture, const LidarStream& stream, const Swee
         {"truncated", frames.truncated}}},
       {"firmware", velodyne::sentence(stream.firmware())},
       {"broken_off", capture.broken_off()},
+      {"two_senders", capture.two_senders()},
   };
 }
 
@@ -187,7 +183,7 @@ void print_table(const Json& info) {
                     listed(port["sizes"], "-"), listed(port["senders"], "-")));
   }
   row("other frames", listed(info["frames"], "-"));
-  for (const char* key : {"firmware", "broken_off"}) {
+  for (const char* key : {"firmware", "broken_off", "two_senders"}) {
     if (const std::string note = info[key]; !note.empty()) row("note", note);
   }
 }

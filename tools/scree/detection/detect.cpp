@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 struct DetectOptions {
   fs::path input, config, out, grid, stages;
-  std::vector<float> viewpoint;  // x, y, z in metres; empty: the file's
+  std::vector<double> viewpoint;  // x, y, z in metres; empty: the file's
 };
 
 /// Lists or grids as lines of JSON, in a file or on standard output.
@@ -65,10 +65,21 @@ void warn_of_losses(const StageCounts& counts, std::string_view what) {
   warn(what, counts.obstacles_dropped, "obstacles found no room: raise memory.obstacles");
 }
 
-/// The stated one, else the file's.
+/// The stated one, else the file's, in the frame of the points.
 Eigen::Vector3f viewpoint_of(const DetectOptions& options, const PcdCloud& cloud) {
   if (options.viewpoint.empty()) return cloud.viewpoint;
-  return {options.viewpoint[0], options.viewpoint[1], options.viewpoint[2]};
+  const Eigen::Map<const Eigen::Vector3d> stated(options.viewpoint.data());
+  return (stated - cloud.origin).cast<float>();
+}
+
+/// An empty list says "looked, and nothing there".
+void require_points(const StageCounts& counts, const fs::path& file) {
+  if (counts.voxels > 0) return;
+  throw Failure(counts.input == 0
+                    ? fmt::format("{}: holds no points", file.string())
+                    : fmt::format("{}: none of its {} points can be used: they are not finite or "
+                                  "too far apart",
+                                  file.string(), counts.input));
 }
 
 void detect_in_cloud(const DetectOptions& options) {
@@ -83,7 +94,6 @@ void detect_in_cloud(const DetectOptions& options) {
                                 settings_file(options.input, options.config).value_or(fs::path()));
   if (!detector) throw Failure(detector.error().message);
 
-  LineWriter writer(options.out);
   ObstacleList list(static_cast<std::size_t>(memory.obstacles));
   const Eigen::Vector3f viewpoint = viewpoint_of(options, *cloud);
   const bool is_known = !options.viewpoint.empty() || could_be_seen_from(viewpoint, *cloud);
@@ -94,10 +104,19 @@ void detect_in_cloud(const DetectOptions& options) {
   }
   StageTimer none;
   detector->detect(seen, list.obstacles, none);
+  require_points(detector->counts(), options.input);
+  const Pose cloud_in_file{cloud->origin, Eigen::Quaterniond::Identity()};
+  for (Obstacle& obstacle : list.obstacles) move_into_parent(cloud_in_file, obstacle);
+  LineWriter writer(options.out);
   writer.write(list);
   writer.finish();
   warn_of_losses(detector->counts(), options.input.string());
   if (options.stages.empty()) return;
+  if (!cloud->origin.isZero()) {
+    fmt::print(stderr,
+               "scree: the stages' points are without the {:.0f} {:.0f} {:.0f} m of the file\n",
+               cloud->origin.x(), cloud->origin.y(), cloud->origin.z());
+  }
   write_stages(*detector, *cloud, options.stages);
   fmt::print(writer.other_output(), "{}\n", chain(detector->counts()));
 }
@@ -124,6 +143,11 @@ void detect_in_capture(const DetectOptions& options) {
     fmt::print(writer.other_output(), "{}: {}\n", name, chain(counts));
   });
   writer.finish();
+  if (sweeps == 0) {
+    throw Failure(
+        options.input.string() +
+        ": nothing was looked at, the lidar has not had a single return (is it covered?)");
+  }
   if (!grids) return;
   grids->finish();
   if (has_grid) return;
@@ -155,7 +179,7 @@ void add_detect(CLI::App& app) {
           "have been seen from there")
       ->expected(3);
   command->callback([options] {
-    if (options->input.extension() == ".pcd") {
+    if (is_pcd(options->input) || options->input.extension() == ".pcd") {
       detect_in_cloud(*options);
     } else {
       detect_in_capture(*options);

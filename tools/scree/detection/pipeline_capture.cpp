@@ -71,7 +71,7 @@ void PipelineCapture::play(const std::function<void(const Sweep&)>& process) {
   waiting.process_all();
   motion_.finish();
   report_capture(lidar_, stream);
-  motion_.report();
+  motion_.report(lidar_.span());
   warn_of_losses(pipeline_, waiting);
 }
 

@@ -22,9 +22,10 @@ struct PictureOptions {
 
 /// What the obstacles lie on.
 struct Ground {
-  PointCloud points;          // `base` frame
-  std::string what;           // for the subtitle
-  std::int64_t stamp_ns = 0;  // of the sweep
+  PointCloud points;                                 // `base` frame
+  std::string what;                                  // for the subtitle
+  std::int64_t stamp_ns = 0;                         // of the sweep
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  // of the points in the frame of the lists
 };
 
 PointCloud moved(const PointCloud& cloud, const Pose& pose) {
@@ -67,12 +68,14 @@ Ground ground_of_capture(const PictureOptions& options) {
 Ground ground_of_cloud(const PictureOptions& options) {
   auto cloud = read_pcd(options.input);
   if (!cloud) throw Failure(cloud.error().message);
-  return {std::move(*cloud), "one point cloud", 0};
+  const Eigen::Vector3d origin = cloud->origin;
+  return {std::move(*cloud), "one point cloud", 0, origin};
 }
 
-/// The obstacles of a list in `base`.
-FixedVector<Obstacle> in_base(const ObstacleList& list) {
-  const Pose to_base = list.pose.inverse();
+/// The obstacles of a list in `base`, or in a cloud with this origin.
+FixedVector<Obstacle> in_base(const ObstacleList& list, const Eigen::Vector3d& origin) {
+  Pose to_base = list.pose.inverse();
+  to_base.translation -= origin;
   const double yaw = yaw_of(list.pose.rotation);
   FixedVector<Obstacle> obstacles(list.obstacles.size());
   for (Obstacle obstacle : list.obstacles) {
@@ -93,12 +96,12 @@ const ObstacleList& list_of(const std::vector<ObstacleList>& lists, std::int64_t
 void picture(const PictureOptions& options) {
   const auto lists = read_detections(options.detections);
   if (lists.empty()) throw Failure(options.detections + " holds no obstacle list");
-  const bool is_cloud = std::filesystem::path(options.input).extension() == ".pcd";
+  const bool is_cloud = is_pcd(options.input);
   const Ground ground = is_cloud ? ground_of_cloud(options) : ground_of_capture(options);
   const std::string title =
       "Obstacles of " + std::filesystem::path(options.input).lexically_normal().filename().string();
   const ObstacleList& list = list_of(lists, ground.stamp_ns);
-  Drawing drawing = draw_top_view(ground.points, in_base(list), title, ground.what);
+  Drawing drawing = draw_top_view(ground.points, in_base(list, ground.origin), title, ground.what);
   drawing.write_png(options.out);
   fmt::print("{}: {}, {} points, {} obstacles\n", options.out, ground.what, ground.points.size(),
              list.obstacles.size());

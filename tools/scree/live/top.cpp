@@ -34,7 +34,8 @@ public:
     view_.health = message;
     health_at_ = Clock::now();
   }
-  const TopView& view() {
+  const TopView& view(std::uint64_t refused) {
+    view_.refused = refused;
     view_.waited = seconds_since(start_);
     view_.list_age = seconds_since(list_at_);
     view_.health_age = seconds_since(health_at_);
@@ -57,7 +58,7 @@ void top(const LcmOptions& options) {
   constexpr int kEscape = 27, kPauseMs = 100;
   for (int key = 0; !is_interrupted() && key != 'q' && key != 'Q' && key != kEscape;
        key = terminal.key()) {
-    terminal.draw(top_page(seen.view(), terminal.rows(), terminal.columns()));
+    terminal.draw(top_page(seen.view(subscriber->refused()), terminal.rows(), terminal.columns()));
     if (!subscriber->handle(kPauseMs)) throw Failure("LCM stopped receiving on " + url);
   }
 }

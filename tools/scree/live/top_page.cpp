@@ -45,6 +45,10 @@ Tone tone_of(std::int8_t sensor_state) {
 }
 
 void add_header(const TopView& view, Area& area) {
+  if (view.refused > 0) {
+    area.add(fmt::format("{} messages are malformed, or of another version of Scree", view.refused),
+             Tone::warning);
+  }
   if (!view.health) {
     area.add(fmt::format("scree top  no health yet for {:.0f} s on {}", view.waited, view.url),
              Tone::bad);

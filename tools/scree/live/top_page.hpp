@@ -18,6 +18,7 @@ struct TopView {
   double health_age = 0;
   std::optional<ObstacleList> list;
   double list_age = 0;
+  std::uint64_t refused = 0;  ///< messages that are malformed, or of another version of Scree
 };
 
 enum class Tone : std::uint8_t { plain, heading, good, warning, bad };

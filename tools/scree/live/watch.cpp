@@ -56,6 +56,14 @@ public:
     print();
   }
 
+  /// Says it at the first, and when there are ten times as many.
+  void say_refused(std::uint64_t refused) {
+    if (refused < refused_to_say_) return;
+    refused_to_say_ = 10 * refused;
+    std::fprintf(stderr, "scree: %llu messages are malformed, or of another version of Scree\n",
+                 static_cast<unsigned long long>(refused));
+  }
+
   int lists() const { return lists_; }
   int healths() const { return healths_; }
   bool has_failed() const { return has_failed_; }
@@ -73,6 +81,7 @@ private:
   ObstacleList list_;
   std::string text_;
   int lists_ = 0, healths_ = 0;
+  std::uint64_t refused_to_say_ = 1;
   bool has_failed_ = false;
 };
 
@@ -114,6 +123,7 @@ void watch(const WatchOptions& options) {
     if (!(*subscriber)->handle(ends ? milliseconds_until(end) : 1000)) {
       throw Failure("LCM stopped receiving on " + url);
     }
+    watcher.say_refused((*subscriber)->refused());
     if (watcher.has_failed()) throw Failure("cannot write to standard output");
   }
   const bool has_lists = watcher.lists() >= std::max(1, options.count);

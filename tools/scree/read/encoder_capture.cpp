@@ -54,7 +54,9 @@ void EncoderCapture::play_until(std::int64_t arrival_ns, EncoderStream& stream) 
     if (!has_next_ || next_.t_ns > arrival_ns) return;
     has_next_ = false;
     ++frames_[interface_];
-    if (interface_ == settings_.interface) stream.take(next_);
+    if (interface_ != settings_.interface) continue;
+    span_.add(next_.t_ns);
+    stream.take(next_);
   }
 }
 

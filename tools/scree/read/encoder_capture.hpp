@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 
+#include "common/time_span.hpp"
 #include "scree/capture/can_log.hpp"
 #include "scree/config/settings.hpp"
 #include "scree/drivers/encoder/encoder_stream.hpp"
@@ -28,6 +29,8 @@ public:
 
   /// Says on stderr what was refused, and why. Throws Failure when no signal was read.
   void report(const encoder::EncoderStream& stream) const;
+  /// From the first frame of the encoder's interface to the last that was played.
+  TimeSpan span() const { return span_; }
   /// One sentence on why no frame was accepted.
   std::string why_nothing(const encoder::EncoderStream& stream) const;
 
@@ -36,6 +39,7 @@ private:
   CanLogReader log_;
   EncoderSettings settings_;
   std::map<std::string, std::uint64_t> frames_;  // by interface
+  TimeSpan span_;
   CanFrame next_;
   std::string interface_;  // of the next one
   bool has_next_ = false;

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "common/time_span.hpp"
 #include "scree/capture/pcap_reader.hpp"
 #include "scree/drivers/xsens/imu_stream.hpp"
 
@@ -27,6 +28,7 @@ public:
   std::uint64_t bytes() const { return bytes_; }
   /// From the first read to the last.
   double seconds() const;
+  TimeSpan span() const { return reads_ > 0 ? TimeSpan{first_ns_, last_ns_} : TimeSpan(); }
   /// Why the file ended before its end; empty if it did not.
   const std::string& broken_off() const { return reader_.broken_off(); }
 

@@ -48,6 +48,8 @@ void LidarCapture::play(LidarStream& stream, const OnDatagram& on_other,
     const bool wanted =
         !has_source || settings_.sender.empty() || ipv4_text(datagram.source) == settings_.sender;
     if (datagram.destination_port == settings_.port && wanted) {
+      const bool is_data = datagram.payload.size() == velodyne::kDataPacketSize;
+      if (is_data && !senders_.takes(datagram.source, datagram.arrival_ns)) continue;
       stream.take(datagram.payload, datagram.arrival_ns);
     } else if (on_other) {
       on_other(datagram);
@@ -58,6 +60,18 @@ void LidarCapture::play(LidarStream& stream, const OnDatagram& on_other,
 
 double LidarCapture::seconds() const {
   return static_cast<double>(last_ns_ - first_ns_) * 1e-9;
+}
+
+std::string LidarCapture::two_senders() const {
+  if (const std::string channels = file_.other_channels(); !channels.empty()) {
+    return fmt::format("{}: {}", name_, channels);
+  }
+  if (senders_.left_out() == 0) return "";
+  return fmt::format(
+      "{}: two sensors send to port {}: the packets from {} are taken, {} from {} are "
+      "left out; choose one with lidar.sender",
+      name_, settings_.port, ipv4_text(senders_.taken()), senders_.left_out(),
+      ipv4_text(senders_.other()));
 }
 
 std::string LidarCapture::why_nothing(const LidarStream& stream) const {
@@ -85,7 +99,11 @@ std::string LidarCapture::why_nothing(const LidarStream& stream) const {
       return fmt::format("{}: none of its {} LCM messages holds a packet of the lidar", name_,
                          seen.other);
     }
-    return fmt::format("{}: no UDP packets in {} frames", name_, seen.other + seen.fragments);
+    if (seen.fragments > 0) {
+      return fmt::format("{}: all {} packets are fragments, of which the others are missing", name_,
+                         seen.fragments);
+    }
+    return fmt::format("{}: no UDP packets in {} frames", name_, seen.other);
   }
   const auto busiest = std::max_element(
       ports_.begin(), ports_.end(),
@@ -103,8 +121,10 @@ void report_capture(const LidarCapture& capture, const LidarStream& stream) {
   const auto note = [](std::string_view text) {
     if (!text.empty()) fmt::print(stderr, "scree: {}\n", text);
   };
+  if (capture.ports().empty() && !capture.broken_off().empty()) throw Failure(capture.broken_off());
   note(capture.broken_off());
   if (stream.counters().accepted == 0) throw Failure(capture.why_nothing(stream));
+  note(capture.two_senders());
   note(velodyne::sentence(stream.firmware()));
   if (const std::uint64_t refused = stream.counters().all_refused(); refused > 0) {
     note(fmt::format("{} packets refused, most of them: {}", refused,

@@ -7,9 +7,11 @@
 #include <map>
 #include <string>
 
+#include "common/time_span.hpp"
 #include "read/lidar_file.hpp"
 #include "scree/config/settings.hpp"
 #include "scree/drivers/velodyne/lidar_stream.hpp"
+#include "scree/drivers/velodyne/one_sender.hpp"
 
 namespace scree::cli {
 
@@ -43,9 +45,12 @@ public:
   /// From the first datagram to the last.
   double seconds() const;
   std::int64_t first_ns() const { return first_ns_; }
+  TimeSpan span() const { return {first_ns_, last_ns_}; }
   /// See LidarFile.
   std::string broken_off() const { return file_.broken_off(); }
 
+  /// One sentence where several sensors send to the data port; empty where one does.
+  std::string two_senders() const;
   /// One sentence on why no packet was accepted.
   std::string why_nothing(const velodyne::LidarStream& stream) const;
 
@@ -54,6 +59,7 @@ private:
   LidarFile file_;
   LidarSettings settings_;
   std::map<std::uint16_t, PortTraffic> ports_;
+  velodyne::OneSender senders_;
   std::int64_t first_ns_ = 0, last_ns_ = 0;
   std::uint64_t datagrams_ = 0;
 };

@@ -1,5 +1,6 @@
 #include "read/lidar_file.hpp"
 
+#include <arpa/inet.h>
 #include <spdlog/fmt/fmt.h>
 
 #include "commands.hpp"
@@ -23,7 +24,11 @@ std::variant<PcapReader, LcmLogReader> open(const std::filesystem::path& capture
 }  // namespace
 
 LidarFile::LidarFile(const std::filesystem::path& capture, const LidarSettings& settings)
-    : reader_(open(capture)), data_port_(settings.port), position_port_(settings.position_port) {}
+    : reader_(open(capture)), data_port_(settings.port), position_port_(settings.position_port) {
+  in_addr address{};
+  const bool is_address = inet_pton(AF_INET, settings.sender.c_str(), &address) == 1;
+  if (is_log() && !is_address) channel_ = settings.sender;
+}
 
 bool LidarFile::next(Datagram& datagram) {
   return is_log() ? next_of_log(datagram) : std::get<PcapReader>(reader_).next(datagram);
@@ -35,6 +40,7 @@ bool LidarFile::next_of_log(Datagram& datagram) {
     const bool is_new = rest_.size() == event_.message.size();
     if (const auto packet = velodyne::take_logged_packet(rest_); !packet.empty()) {
       const bool is_data = packet.size() == velodyne::kDataPacketSize;
+      if (is_data && !is_of_my_channel()) continue;
       datagram = {};
       datagram.arrival_ns = event_.arrival_ns;
       datagram.destination_port = static_cast<std::uint16_t>(is_data ? data_port_ : position_port_);
@@ -46,6 +52,22 @@ bool LidarFile::next_of_log(Datagram& datagram) {
     if (!log.next(event_)) return false;
     rest_ = event_.message;
   }
+}
+
+/// Mixed, the packets of two sensors make no sweep.
+bool LidarFile::is_of_my_channel() {
+  if (channel_.empty()) channel_ = event_.channel;
+  if (event_.channel == channel_) return true;
+  other_channel_ = event_.channel;
+  return false;
+}
+
+std::string LidarFile::other_channels() const {
+  if (other_channel_.empty()) return "";
+  return fmt::format(
+      "packets of a lidar lie on several channels: those of {} are taken, those of {} "
+      "are not; choose a channel with lidar.sender",
+      channel_, other_channel_);
 }
 
 const FrameCounters& LidarFile::frames() const {

@@ -14,6 +14,15 @@ void note(const std::string& text) {
   fmt::print(stderr, "scree: {}\n", text);
 }
 
+/// Samples that never meet a sweep are of no use, and otherwise nobody would know.
+void note_other_clock(const char* what, const TimeSpan& sensor, const TimeSpan& lidar) {
+  if (sensor.empty() || lidar.empty() || sensor.meets(lidar)) return;
+  note(
+      fmt::format("the {} lie outside the lidar's time ({} against {}): not used; log both by the "
+                  "same clock (candump -L)",
+                  what, sensor.text(), lidar.text()));
+}
+
 /// In one thread nothing has to wait in a ring, which a long part without lidar would overflow.
 template <class Sample>
 void put(SyncBuffer& sensors, const Sample& sample) {
@@ -45,7 +54,7 @@ void MotionCapture::finish() {
   if (encoder_) encoder_->play(encoder_stream_);
 }
 
-void MotionCapture::report() const {
+void MotionCapture::report(const TimeSpan& lidar) const {
   if (!imu_ && !encoder_) {
     note("neither IMU nor encoder in the capture: each sweep was taken by itself");
     return;
@@ -56,6 +65,7 @@ void MotionCapture::report() const {
     note(imu_->why_nothing(imu_stream_));
   } else {
     report_capture(*imu_, imu_stream_);
+    note_other_clock("IMU's bytes", imu_->span(), lidar);
     if (imu_stream_.counters().oriented == 0) note("the IMU sent no orientation: it is not used");
   }
   if (!encoder_) {
@@ -64,6 +74,7 @@ void MotionCapture::report() const {
     note(encoder_->why_nothing(encoder_stream_));
   } else {
     encoder_->report(encoder_stream_);
+    note_other_clock("encoder's frames", encoder_->span(), lidar);
   }
 }
 

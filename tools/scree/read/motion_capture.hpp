@@ -21,8 +21,9 @@ public:
   /// Plays what had arrived by then.
   void play_until(std::int64_t arrival_ns);
   void finish();
-  /// Says on stderr what a person should know: what was refused, a sensor that said nothing.
-  void report() const;
+  /// Says on stderr what a person should know: what was refused, a sensor that said nothing or only
+  /// at other times than the lidar's.
+  void report(const TimeSpan& lidar) const;
 
 private:
   EncoderSettings encoder_settings_;  // with what their DBC file says

@@ -56,17 +56,20 @@ void copy_records(PcapReader reader, const Slice& slice, const fs::path& file) {
   require(writer.close());
 }
 
-/// Packets of an LCM log become datagrams.
+/// Packets of an LCM log become datagrams, and so do those of a pcapng file, whose interfaces may
+/// have several link types: a pcap file has one.
 void copy_lidar(const fs::path& capture, const Settings& settings, const Slice& slice,
                 const fs::path& file) {
   const fs::path source = value_or_fail(lidar_file(capture));
-  if (!is_lcm_log(source))
+  if (!is_lcm_log(source) && !is_pcapng(source)) {
     return copy_records(value_or_fail(PcapReader::open(source)), slice, file);
-  LidarFile log(source, settings.lidar);
+  }
+  LidarFile lidar(source, settings.lidar);
   auto writer = value_or_fail(PcapWriter::create_ethernet(file));
-  for (Datagram datagram; log.next(datagram);) {
+  for (Datagram datagram; lidar.next(datagram);) {
     if (slice.holds(datagram.arrival_ns)) writer.write(datagram);
   }
+  if (!lidar.broken_off().empty()) fmt::print(stderr, "scree: {}\n", lidar.broken_off());
   require(writer.close());
 }
 

@@ -21,12 +21,13 @@ struct DbcSignal {
   bool is_signed = false;
   double factor = 1, offset = 0;  ///< raw * factor + offset is the physical value ...
   std::string unit;               ///< ... in this unit, which is free text
+  bool is_float = false;          ///< raw is the bits of a float or a double
 };
 
 /// Finds MESSAGE.SIGNAL in a file's text. Lines that are none of BO_, SG_ and SIG_VALTYPE_ are
-/// passed over, those that are and cannot be read too. One sentence where there is no such message
-/// or signal (with the names that are nearest), where it is multiplexed or a floating-point number,
-/// or does not fit a frame. `origin` stands for the file's name in it.
+/// passed over. One sentence where there is no such message or signal (with the names that are
+/// nearest, or the first line that cannot be read), where it is multiplexed or does not
+/// fit a frame. `origin` stands for the file's name in it.
 Result<DbcSignal> find_signal(std::string_view dbc, std::string_view name,
                               const std::string& origin);
 

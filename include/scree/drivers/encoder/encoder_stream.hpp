@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 
 #include "scree/config/settings.hpp"
 #include "scree/core/can_frame.hpp"
@@ -38,12 +39,14 @@ public:
   const EncoderCounters& counters() const { return counters_; }
 
 private:
+  bool is_mine(const CanFrame& frame);
   void refuse(Refusal reason) { ++counters_.refused[static_cast<std::size_t>(reason)]; }
 
   EncoderSettings settings_;
   OnSample on_sample_;
   OnReading on_reading_;
   Odometer odometer_;
+  std::optional<std::uint32_t> source_;  // where any may send: identifier of the first one
   EncoderCounters counters_;
 };
 

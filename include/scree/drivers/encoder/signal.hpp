@@ -21,7 +21,7 @@ std::optional<std::int64_t> read_signal(const EncoderSettings& layout,
 /// What a raw value means: metres for a counter, m/s for a speed.
 double scaled(const EncoderSettings& layout, std::int64_t raw);
 
-/// Metres, or m/s, of one step of the raw value; not below zero.
+/// Metres, or m/s, of one step of the raw value; not below zero. Zero for a floating-point one.
 double quantum(const EncoderSettings& layout);
 
 }  // namespace scree::encoder

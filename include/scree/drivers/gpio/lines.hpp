@@ -58,8 +58,8 @@ private:
 /// @param name as that of an Output
 Result<std::string> holder_of(const std::string& name);
 
-/// Whether all that is named can be the name of a line; nothing is opened. The error names the key.
-Result<void> check_names(const GpioSettings& settings);
+/// Whether a text can be the name of a line, or is empty for none; nothing is opened.
+Result<void> check_name(const std::string& name);
 
 /// The lines that the configuration names.
 struct Lines {

@@ -16,7 +16,7 @@ Refusal check_data_packet(Bytes datagram, LidarModel model);
 
 /// Microseconds past the hour of the packet's first shot. @pre checked
 inline std::uint32_t timestamp_us(Bytes packet) {
-  return read<std::uint32_t>(packet, kTimestampOffset);
+  return read<std::uint32_t>(packet, kTimestampOffset) % kHourUs;
 }
 /// @pre checked
 inline ReturnMode return_mode(Bytes packet) {

@@ -34,7 +34,8 @@ struct DecodedPacket {
 };
 
 /// All there is between the datagrams of the data port and sweeps on the host's clock; the daemon
-/// and the tools use it alike. Allocates when it is made and never again. Deterministic.
+/// and the tools use it alike. Packets that overtook others by less than 8 ms are put in order.
+/// Allocates when it is made and never again. Deterministic.
 ///
 /// A packet's device time is that of its first shot; it leaves the sensor after the last one.
 /// Points of a sweep have the spacing of the device's clock, and the sweep as a whole is laid on
@@ -78,6 +79,11 @@ private:
   void refuse(Refusal reason) { ++counters_.refused[static_cast<std::size_t>(reason)]; }
   void hold(Bytes packet, std::int64_t arrival_ns);
   void release(bool accept_them);
+  std::int64_t elapsed_ns(Bytes packet) const;
+  std::int64_t gap_ns(Bytes packet) const;
+  void put_in_order(Bytes packet, std::int64_t arrival_ns);
+  void keep_early(Bytes packet, std::int64_t arrival_ns);
+  void accept_first_early();
   void accept(Bytes packet, std::int64_t arrival_ns);
   void count_lost(std::int64_t elapsed_ns);
 
@@ -90,6 +96,8 @@ private:
   FirmwareDetector firmware_detector_;
   std::array<Held, 32> held_{};  ///< packets with product byte 0x21 until it is decided
   std::size_t held_count_ = 0;
+  std::array<Held, 6> early_{};  ///< packets that came before others that were sent before them
+  std::size_t early_count_ = 0;
   std::optional<Previous> previous_;
   /// Azimuth where the field of view that is set in the sensor begins, hundredths of a degree; -1
   /// where none is known.

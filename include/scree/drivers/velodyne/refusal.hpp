@@ -15,7 +15,7 @@ enum class Refusal : std::uint8_t {
   product,      ///< of another model than the configured one
   return_mode,  ///< neither strongest, last nor dual
   azimuth,      ///< above 360 degrees
-  timestamp,    ///< past the hour
+  timestamp,    ///< more than a second past the hour
   timing,       ///< product byte 0x21 and not the packet rate of a VLP-16: an HDL-32E
   duplicate,    ///< the time stamp of the packet before it
   late          ///< out of order: older than the packet before it
@@ -35,7 +35,7 @@ inline constexpr std::array<std::string_view, kRefusals> kRefusalReasons = {
     "product byte of another model than lidar.model",
     "return mode byte is neither strongest, last nor dual",
     "azimuth above 360 degrees",
-    "time stamp past the hour",
+    "time stamp more than a second past the hour",
     "packet rate of another sensor (HDL-32E)",
     "duplicate",
     "out of order"};

@@ -10,6 +10,11 @@
 
 namespace scree {
 
+/// What open() below makes of its addresses, in host byte order, or the sentence that it gives; 0
+/// is any. Nothing is opened.
+Result<std::uint32_t> local_address(const std::string& text);
+Result<std::uint32_t> sender_address(const std::string& text);
+
 /// A datagram as the kernel hands it over.
 struct ReceivedDatagram {
   std::span<const std::uint8_t> bytes;  ///< in the buffer given to receive()

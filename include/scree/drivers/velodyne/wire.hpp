@@ -41,7 +41,7 @@ inline constexpr std::int32_t kFiringNs = 55296;
 inline constexpr std::int32_t kBlockNs = 2 * kFiringNs;
 inline constexpr std::int32_t kPacketNs = static_cast<std::int32_t>(kBlocks) * kBlockNs;
 
-inline constexpr std::uint32_t kHourUs = 3'600'000'000;  // time stamps stay below it
+inline constexpr std::uint32_t kHourUs = 3'600'000'000;  // time stamps begin anew there
 inline constexpr std::int64_t kHourNs = 3'600'000'000'000;
 
 enum class ReturnMode : std::uint8_t { strongest = 0x37, last = 0x38, dual = 0x39 };

@@ -1,0 +1,130 @@
+"""Files that users of such programs had trouble with: python3 field_test.py SCREE DATA [TEST ...]"""
+
+import json
+import math
+import os
+import shutil
+import struct
+import sys
+
+from programs import ProgramTest, main
+
+SCREE, DATA = sys.argv[1:3]
+
+
+class FieldTest(ProgramTest):
+    def field(self, name):
+        path = os.path.join(DATA, "field", name)
+        if not os.path.exists(path):
+            self.skipTest(f"{path} is not there")
+        return path
+
+    def detect(self, source):
+        """The lists, as objects, of `scree detect`."""
+        result = self.done(SCREE, "detect", source)
+        return [json.loads(line) for line in result.stdout.splitlines()]
+
+    def info_of(self, capture):
+        return json.loads(self.done(SCREE, "info", capture, "--json").stdout)
+
+    def info(self, name):
+        return self.info_of(self.field(name))
+
+    def test_a_cloud_far_from_the_origin_has_its_obstacles_in_its_own_coordinates(self):
+        folder = self.field("pcd_far_from_origin")
+        near = self.detect(os.path.join(folder, "local.pcd"))[0]["obstacles"]
+        far = self.detect(os.path.join(folder, "utm.pcd"))[0]["obstacles"]
+        self.assertEqual([o["kind"] for o in near], ["positive"])
+        self.assertEqual([o["kind"] for o in far], ["positive"])
+        with open(os.path.join(folder, "utm.pcd"), "rb") as file:
+            x, y, z = struct.unpack("<3d", file.read().split(b"DATA binary\n", 1)[1][:24])
+        with open(os.path.join(folder, "local.pcd"), "rb") as file:
+            first = struct.unpack("<3f", file.read().split(b"DATA binary\n", 1)[1][:12])
+        moved = [a - b for a, b in zip((x, y, z), first)]
+        center = [a - b for a, b in zip(far[0]["center"], moved)]
+        self.assertLess(math.dist(center, near[0]["center"]), 0.1)
+        corner = [a - b for a, b in zip(far[0]["footprint"][0], moved)]
+        self.assertLess(math.dist(corner, near[0]["center"][:2]), 1)
+
+    def test_captures_of_several_interfaces_are_whole(self):
+        for name in ("two_link_types.pcapng", "two_snaplens.pcapng"):
+            self.assertEqual(self.info("pcapng_interfaces/" + name)["packets"], 302, name)
+            capture = self.field("pcapng_interfaces/" + name)
+            self.done(SCREE, "slice", capture, self.path(name))
+            info = self.info_of(self.path(name))
+            self.assertEqual(info["packets"], 302, name)
+
+    def test_fragments_disorder_and_the_full_hour_cost_no_packet(self):
+        self.assertEqual(self.info("ip_fragments/frag.pcap")["packets"], 168)
+        for capture in ("reordered_datagrams/a.pcap", "hour_timestamp/beyond.pcap"):
+            info = self.info(capture)
+            self.assertEqual((info["lost"], info["refused"]), (0, {}), capture)
+        self.assertEqual(self.info("reordered_datagrams/a.pcap")["packets"], 200)
+
+    def wheel(self, name):
+        """The values of the encoder in a folder of the field."""
+        return [float(row[-1]) for row in self.decoded(SCREE, self.field(name), "encoder")]
+
+    def test_dbc_files_of_other_programs_are_read_or_named(self):
+        self.assertEqual(len(self.wheel("j1939_source_address")), 50)
+        self.assertGreater(len(self.wheel("dbc/float")), 10)
+        self.assertAlmostEqual(self.wheel("dbc/utf8name")[0], 10 / 3.6, places=4)
+        for name, words in {
+            "units3": "1 KPH is 0.277778 m/s",
+            "commentq": "wheel.dbc:9: ",
+            "dashname": "wheel.dbc:9: the line cannot be read",
+            "utf16": "save it as UTF-8",
+        }.items():
+            result = self.run_to_end(
+                SCREE, "decode", self.field(f"dbc/{name}"), "--sensor", "encoder"
+            )  # fmt: skip
+            self.assert_fails(result, words)
+
+    def test_logs_of_candump_are_read_whatever_their_form(self):
+        folder = self.field("candump_kinds")
+        counts = {}
+        for name in ("ta.log", "bom.log"):
+            config = os.path.join(folder, "enc.toml")
+            log = os.path.join(folder, name)
+            counts[name] = self.decoded(SCREE, log, "encoder", "--config", config)
+        self.assertGreater(len(counts["ta.log"]), 10)
+        self.assertEqual(counts["ta.log"], counts["bom.log"])
+
+    def test_a_log_by_another_clock_is_said_with_both_times(self):
+        log = self.field("can_log_other_clock/tz.can.log")
+        drive = os.path.join(DATA, "captures/interop")
+        self.done(SCREE, "slice", drive, self.path("part"), "--to", "3")
+        shutil.copyfile(log, self.path("part/can.log"))
+        said = self.done(SCREE, "detect", self.path("part"), "--out", self.path("l.jsonl")).stderr
+        self.assertRegex(said, "encoder's frames lie outside the lidar's time .1970-01-01 .* 2020-08-28")
+
+    def test_of_two_lidars_on_one_port_one_is_taken(self):
+        for name, words in {
+            "two_senders/two.pcap": ("192.168.1.20", "lidar.sender"),
+            "lcm_log/two_lidars.log": ("several channels", "lidar.sender"),
+        }.items():
+            info = self.info(name)
+            self.assertLess(info["rpm"], 1300, name)
+            self.assertEqual((info["lost"], info["refused"]), (0, {}), name)
+            for word in words:
+                self.assertIn(word, info["two_senders"])
+            result = self.done(SCREE, "detect", self.field(name))
+            self.assertIn("lidar.sender", result.stderr)
+
+    def test_files_are_known_by_their_content(self):
+        folder = self.field("file_kinds")
+        for name in ("CLOUD.PCD", "cloud_without_suffix"):
+            self.assertEqual(len(self.detect(os.path.join(folder, name))), 1, name)
+        result = self.run_to_end(SCREE, "info", os.path.join(folder, "cap.pcap.gz"))
+        self.assert_fails(result, "is packed with gzip: unpack it first")
+
+    def test_headers_that_other_programs_write_are_read(self):
+        folder = self.field("pcd_headers")
+        for name in ("bom.pcd", "lower_case_types.pcd"):
+            self.assertEqual(len(self.detect(os.path.join(folder, name))), 1, name)
+        result = self.run_to_end(SCREE, "detect", os.path.join(folder, "one_line_short.pcd"))
+        self.assert_fails(result, "1999 of 2000 points")
+
+
+if __name__ == "__main__":
+    main(sys.argv[3:])
