@@ -62,6 +62,7 @@ ClusteredPoints SurfaceMethod::find(const PointCloud& points, const SeenCloud& c
   sloped_.cells.build(points, gradient_.reach());
   build_ground(cloud);
   mark_points_off_ground();
+  thin_candidates(counts);
   timer.done(Stage::surface);
   sloped_.compute(gradient_, is_off_ground_);
   gather_candidates(counts);
@@ -120,13 +121,31 @@ void SurfaceMethod::mark_points_off_ground() {
   }
 }
 
+/// Where there is no room for all, those above the ground are thinned evenly: what stands there
+/// loses points, and nothing is lost.
+void SurfaceMethod::thin_candidates(StageCounts& counts) {
+  std::size_t above = 0, below = 0;
+  for (std::size_t i = 0; i < is_off_ground_.size(); ++i) {
+    if (is_off_ground_[i] != 0) ++(height_[i] > 0 ? above : below);
+  }
+  counts.candidates = above + below;
+  if (above + below <= max_candidates_ || below >= max_candidates_) return;
+  const std::size_t room = max_candidates_ - below;
+  std::size_t due = 0;
+  for (std::size_t i = 0; i < is_off_ground_.size(); ++i) {
+    if (is_off_ground_[i] == 0 || height_[i] <= 0) continue;
+    due += room;
+    is_off_ground_[i] = due >= above ? 1 : 0;
+    if (due >= above) due -= above;
+  }
+}
+
 void SurfaceMethod::gather_candidates(StageCounts& counts) {
   candidates_.clear();
   for (std::size_t i = 0; i < sloped_.size(); ++i) {
     const bool is_known = sloped_.is_known(i);
     if (is_known) ++counts.known;
     if (is_off_ground_[i] == 0) continue;
-    ++counts.candidates;
     if (!candidates_.push_back(sloped_.points(), i, is_known ? sloped_.slope_x[i] : 0.0F,
                                is_known ? sloped_.slope_y[i] : 0.0F, height_[i])) {
       ++counts.candidates_dropped;

@@ -24,6 +24,7 @@ constexpr std::size_t kPassingBeams = 16384;
 RollingMap::RollingMap(const MapSettings& settings, std::size_t max_voxels)
     : settings_(settings),
       inverse_(static_cast<float>(1 / settings.voxel)),
+      reach_(static_cast<float>(settings.reach)),
       voxels_(max_voxels),
       cloud_(voxels_.capacity()),
       passing_(kPassingBeams),
@@ -54,7 +55,7 @@ void RollingMap::add(const DeskewedSweep& sweep, const Pose& pose, std::int64_t 
   decay_beam_counts();
   const Eigen::Matrix3f rotation = pose.rotation.toRotationMatrix().cast<float>();
   const Eigen::Vector3f translation = (pose.translation - origin_).cast<float>();
-  const auto reach = static_cast<float>(std::min(settings_.reach, reach_of_sweep));
+  const auto reach = static_cast<float>(std::min<double>(reach_, reach_of_sweep));
   add_points(sweep, rotation, translation, reach);
   trace_rays(sweep, rotation, translation, reach);
   add_passing_beams(sweep, rotation, translation);
@@ -274,11 +275,23 @@ bool RollingMap::remove_left(const Obstacle& obstacle) {
   return true;
 }
 
+/// Among trees the map fills up: then what is farthest off makes room, as far as obstacles are not
+/// searched for there.
+void RollingMap::fit_reach() {
+  constexpr float kFull = 0.85F, kRoomy = 0.7F, kStep = 0.95F;
+  const auto farthest = static_cast<float>(settings_.reach);
+  const auto nearest = std::min(static_cast<float>(settings_.search_reach), farthest);
+  const auto used = static_cast<float>(voxels_.size()) / static_cast<float>(voxels_.capacity());
+  if (used > kFull) reach_ = std::max(reach_ * kStep, nearest);
+  if (used < kRoomy) reach_ = std::min(reach_ / kStep, farthest);
+}
+
 /// Removes what is too far off, what has moved away, what is too old, what was never confirmed.
 void RollingMap::prune(const Pose& pose) {
   constexpr std::uint32_t kConfirmWithin = 30;  // sweeps
   const Eigen::Vector3f robot = (pose.translation - origin_).cast<float>();
-  const auto reach = static_cast<float>(settings_.reach);
+  fit_reach();
+  const float reach = reach_;
   const auto kept_ns = static_cast<std::int64_t>(settings_.keep_seconds * 1e9);
   for (std::size_t i = voxels_.size(); i-- > 0;) {
     MapVoxel& voxel = voxels_[i];

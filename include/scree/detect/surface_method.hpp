@@ -49,6 +49,7 @@ private:
   void build_ground(const SeenCloud& cloud);
   void leave_out_ground_below_edges();
   void mark_points_off_ground();
+  void thin_candidates(StageCounts& counts);
   void gather_candidates(StageCounts& counts);
   void cluster(StageCounts& counts);
   void measure_clusters(const PointCloud& points);

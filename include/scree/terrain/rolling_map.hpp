@@ -76,6 +76,7 @@ private:
   void add_passing_beams(const DeskewedSweep& sweep, const Eigen::Matrix3f& rotation,
                          const Eigen::Vector3f& translation);
   void add_passing_beam(const Eigen::Vector3f& origin, const Eigen::Vector3f& beam);
+  void fit_reach();
   void prune(const Pose& pose);
   bool has_left(const Obstacle& obstacle) const;
   bool confirm(MapVoxel& voxel) const;
@@ -85,6 +86,7 @@ private:
 
   MapSettings settings_;
   float inverse_;  // voxels a metre
+  float reach_;    // metres, as far as there is room
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
   Eigen::Vector3f robot_ = Eigen::Vector3f::Zero();  // from the origin, after the last sweep
   VoxelHashMap voxels_;
