@@ -2,12 +2,8 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include <algorithm>
-#include <cmath>
+#include <limits>
 #include <utility>
-
-#include "scree/detect/obstacle_box.hpp"
-#include "scree/detect/oriented_box.hpp"
 
 namespace scree {
 
@@ -63,9 +59,8 @@ Pipeline::Pipeline(const Settings& settings, const Networks& networks)
       sweep_tracker_(TrackingSettings::for_sweep(),
                      static_cast<std::size_t>(settings.memory.obstacles)),
       moving_tracker_(static_cast<std::size_t>(settings.memory.obstacles)),
-      polygons_(static_cast<std::size_t>(settings.memory.sweep_points)),
-      moving_points_(static_cast<std::size_t>(settings.memory.sweep_points)),
-      order_(static_cast<std::size_t>(settings.memory.sweep_points)),
+      moving_boxes_(static_cast<std::size_t>(settings.memory.sweep_points),
+                    static_cast<std::size_t>(settings.memory.obstacles)),
       sweep_(static_cast<std::size_t>(settings.memory.sweep_points)),
       found_(static_cast<std::size_t>(settings.memory.obstacles)),
       list_(static_cast<std::size_t>(settings.memory.obstacles)) {
@@ -101,10 +96,7 @@ const ObstacleList& Pipeline::process(const Sweep& sweep) {
 
 void Pipeline::detect_in_map() {
   const RollingMap& map = mapper_->map();
-  tracker_.remove_if([&](const Obstacle& obstacle) {
-    constexpr double kUpright = 0.8;  // metres: what is lower, beams pass above
-    return obstacle.height > kUpright && mapper_->map().remove_left(obstacle);
-  });
+  tracker_.remove_if([this](const Obstacle& obstacle) { return mapper_->remove_left(obstacle); });
   SeenCloud cloud = map.seen_cloud();
   cloud.robot = (mapper_->pose().translation - map.origin()).head<2>().cast<float>();
   map_detector_.detect(cloud, found_, timer_);
@@ -113,7 +105,7 @@ void Pipeline::detect_in_map() {
   tracker_.update(
       list_.stamp_ns, mapper_->pose().translation, {found_.data(), found_.size()},
       [&map](const Eigen::Vector3d& place) { return map.occupancy_at(place); }, list_.obstacles);
-  find_moving();
+  add_moving();
   list_.pose = mapper_->to_odom() * mapper_->pose();
   for (Obstacle& obstacle : list_.obstacles) move_into_parent(mapper_->to_odom(), obstacle);
   timer_.done(Stage::tracking);
@@ -123,85 +115,32 @@ void Pipeline::detect_in_map() {
   timer_.done(Stage::grid);
 }
 
-/// The ground below a place in the map's frame, as the last list had it.
-float Pipeline::ground_at(const Eigen::Vector3d& place) const {
-  const SurfaceMethod* const method = map_detector_.surface_method();
-  const Eigen::Vector3d& origin = mapper_->map().origin();
-  const Eigen::Vector3f in_cloud = (place - origin).cast<float>();
-  if (method == nullptr || method->ground().columns() == 0) return NAN;
-  if (!method->ground().covers(in_cloud.x(), in_cloud.y())) return NAN;
-  return method->ground().height(in_cloud.x(), in_cloud.y()) + static_cast<float>(origin.z());
-}
-
-Obstacle Pipeline::moving_obstacle(std::span<const std::uint32_t> members) {
-  const DeskewedSweep& sweep = mapper_->sweep();
-  moving_points_.clear();
-  order_.clear();
-  float low = 1e9F, high = -1e9F;
-  for (const std::uint32_t i : members) {
-    const Eigen::Vector3d in_base(sweep.points.x[i], sweep.points.y[i], sweep.points.z[i]);
-    const Eigen::Vector3f point = (mapper_->pose() * in_base).cast<float>();
-    order_.push_back(static_cast<std::uint32_t>(moving_points_.size()));
-    moving_points_.push_back(point.x(), point.y(), point.z(), 0);
-    low = std::min(low, point.z());
-    high = std::max(high, point.z());
-  }
-  const OrientedBox box = smallest_box(moving_points_, {order_.data(), order_.size()});
-  Obstacle obstacle;
-  obstacle.kind = ObstacleKind::positive;
-  obstacle.confidence = 1;
-  obstacle.center = {box.center_x, box.center_y, low};
-  const float ground = ground_at(obstacle.center);
-  if (std::isfinite(ground)) low = ground;
-  obstacle.center.z() = (low + high) / 2;
-  obstacle.height = std::max(high - low, 0.05F);
-  obstacle.extent = {box.length, box.width, obstacle.height};
-  obstacle.yaw = box.yaw;
-  obstacle.points = static_cast<std::uint32_t>(members.size());
-  obstacle.footprint = polygons_.around(moving_points_, {order_.data(), order_.size()});
-  return obstacle;
-}
-
-void Pipeline::find_moving() {
-  found_.clear();
+/// Adds what moves in the sweep to the list.
+void Pipeline::add_moving() {
+  const RollingMap& map = mapper_->map();
   const MovingPoints& moving = mapper_->moving();
+  moving_boxes_.clear();
   for (std::size_t i = 0; i < moving.size(); ++i) {
-    found_.push_back(moving_obstacle(moving.members(i)));
+    moving_boxes_.add(mapper_->sweep().points, moving.members(i), mapper_->pose(),
+                      [this](const Eigen::Vector3d& place) { return ground_at(place); });
   }
   std::int64_t next_id = tracker_.next_id();
-  const RollingMap& map = mapper_->map();
   moving_tracker_.update(
-      list_.stamp_ns, {found_.data(), found_.size()},
+      list_.stamp_ns, moving_boxes_.found(),
       [&map](const Eigen::Vector3d& place) { return map.is_seen_through(place); }, next_id);
   tracker_.set_next_id(next_id);
-  hand_over_standing();
-  for (const MovingTracker::Track& track : moving_tracker_.tracks()) {
-    if (track.obstacle.id == 0) continue;
-    const Obstacle obstacle = MovingTracker::published(track);
-    const auto last =
-        std::remove_if(list_.obstacles.begin(), list_.obstacles.end(), [&](const Obstacle& each) {
-          return each.velocity.isZero() && distance_to_box(obstacle, each.center) < 0.2;
-        });
-    list_.obstacles.resize(static_cast<std::size_t>(last - list_.obstacles.begin()));
-    list_.obstacles.push_back(obstacle);
-  }
+  moving_tracker_.add_to(list_.obstacles, tracker_);
 }
 
-/// What moved and stands now comes into the map, and keeps its id there.
-void Pipeline::hand_over_standing() {
-  constexpr double kNear = 0.3;  // metres
-  for (Obstacle& obstacle : list_.obstacles) {
-    if (obstacle.kind != ObstacleKind::positive) continue;
-    for (const MovingTracker::Track& track : moving_tracker_.tracks()) {
-      if (track.is_matched || track.obstacle.id == 0) continue;
-      if (distance_to_box(track.obstacle, obstacle.center) > kNear) continue;
-      const std::int64_t id = track.obstacle.id;
-      tracker_.rename(obstacle.id, id);
-      obstacle.id = id;
-      moving_tracker_.end(id);
-      break;
-    }
-  }
+/// z of the ground at a place in the map's frame; no number where it is not known.
+float Pipeline::ground_at(const Eigen::Vector3d& place) const {
+  constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+  const SurfaceMethod* const method = map_detector_.surface_method();
+  if (method == nullptr || method->ground().columns() == 0) return kUnknown;
+  const Eigen::Vector3d& origin = mapper_->map().origin();
+  const Eigen::Vector3f in_cloud = (place - origin).cast<float>();
+  if (!method->ground().covers(in_cloud.x(), in_cloud.y())) return kUnknown;
+  return method->ground().height(in_cloud.x(), in_cloud.y()) + static_cast<float>(origin.z());
 }
 
 void Pipeline::detect_in_sweep(const Sweep& sweep) {

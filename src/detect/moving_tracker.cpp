@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <utility>
+
+#include "scree/detect/obstacle_box.hpp"
 
 namespace scree {
 namespace {
@@ -87,7 +89,7 @@ void MovingTracker::associate(std::span<const Obstacle> found, std::int64_t stam
     track.seen_ns = stamp_ns;
     track.found = 1;
     track.is_matched = true;
-    tracks_.push_back(track);
+    if (!tracks_.push_back(track)) ++dropped_;
   }
 }
 
@@ -110,6 +112,37 @@ void MovingTracker::add_found(const Obstacle& found, std::int64_t stamp_ns, Trac
   track.is_matched = true;
 }
 
+void MovingTracker::add_to(FixedVector<Obstacle>& list, Tracker& standing) {
+  constexpr double kSame = 0.2;  // metres
+  hand_over(list, standing);
+  for (const Track& track : tracks_) {
+    if (track.obstacle.id == 0) continue;
+    const auto last = std::remove_if(list.begin(), list.end(), [&](const Obstacle& other) {
+      return other.velocity.isZero() && distance_to_box(track.obstacle, other.center) < kSame;
+    });
+    list.resize(static_cast<std::size_t>(last - list.begin()));
+    if (!list.push_back(published(track))) ++dropped_;
+  }
+}
+
+/// What moved and stands now has come into the map.
+void MovingTracker::hand_over(FixedVector<Obstacle>& list, Tracker& standing) {
+  constexpr double kNear = 0.3;  // metres
+  for (Obstacle& obstacle : list) {
+    if (obstacle.kind != ObstacleKind::positive) continue;
+    const auto track = std::find_if(tracks_.begin(), tracks_.end(), [&](const Track& each) {
+      return !each.is_matched && each.obstacle.id != 0 &&
+             distance_to_box(each.obstacle, obstacle.center) <= kNear;
+    });
+    if (track == tracks_.end()) continue;
+    standing.rename(obstacle.id, track->obstacle.id);
+    obstacle.id = track->obstacle.id;
+    std::move(track + 1, tracks_.end(), track);
+    tracks_.resize(tracks_.size() - 1);
+  }
+}
+
+/// As it is published: with a velocity only where it surely moves.
 Obstacle MovingTracker::published(const Track& track) {
   constexpr double kLeastSpeed = 0.25, kLeastWay = 0.2;  // m/s, metres
   Obstacle obstacle = track.obstacle;
@@ -119,14 +152,6 @@ Obstacle MovingTracker::published(const Track& track) {
       track.velocity.norm() > std::max(kLeastSpeed, 2 * deviation) && way > kLeastWay;
   obstacle.velocity = moves ? track.velocity : Eigen::Vector2d::Zero();
   return obstacle;
-}
-
-void MovingTracker::end(std::int64_t id) {
-  std::size_t kept = 0;
-  for (const Track& track : tracks_) {
-    if (track.obstacle.id != id) tracks_[kept++] = track;
-  }
-  tracks_.resize(kept);
 }
 
 }  // namespace scree

@@ -31,11 +31,23 @@ bool is_in_zone(const StopSettings& zone, const Pose& pose, const Obstacle& obst
   return true;
 }
 
+bool will_be_in_zone(const StopSettings& zone, const Pose& pose, const Obstacle& obstacle) {
+  constexpr int kSteps = 8;
+  const Eigen::Vector3d velocity(obstacle.velocity.x(), obstacle.velocity.y(), 0);
+  if (velocity.isZero()) return is_in_zone(zone, pose, obstacle);
+  for (int i = 0; i <= kSteps; ++i) {
+    Obstacle then = obstacle;
+    move_into_parent({i * zone.hold / kSteps * velocity, Eigen::Quaterniond::Identity()}, then);
+    if (is_in_zone(zone, pose, then)) return true;
+  }
+  return false;
+}
+
 void StopLine::update(const ObstacleList& list, std::int64_t now_ns) {
   hold(now_ns);
   is_obstructed_ = std::any_of(
       list.obstacles.begin(), list.obstacles.end(),
-      [&](const Obstacle& obstacle) { return is_in_zone(settings_, list.pose, obstacle); });
+      [&](const Obstacle& obstacle) { return will_be_in_zone(settings_, list.pose, obstacle); });
 }
 
 void StopLine::set_blind(bool is_blind, std::int64_t now_ns) {

@@ -237,6 +237,8 @@ bool RollingMap::is_seen_through(const Eigen::Vector3d& point) const {
 /// Whether beams go through nearly all of a box, from knee height up to shortly below its top.
 bool RollingMap::has_left(const Obstacle& obstacle) const {
   constexpr double kStep = FreeSpace::kCell, kKnee = 0.25, kTop = 0.15;  // metres
+  constexpr double kUpright = 0.8;  // metres: beams pass above what is lower
+  if (obstacle.height < kUpright) return false;
   constexpr int kFewest = 4, kMostThere = 5;  // places gone through, and how many for each one left
   const Eigen::Rotation2Dd turn(obstacle.yaw);
   const Eigen::Vector3d half = obstacle.extent / 2;

@@ -11,8 +11,8 @@
 #include "scree/core/stage_times.hpp"
 #include "scree/core/sweep.hpp"
 #include "scree/detect/detector.hpp"
-#include "scree/detect/enclosing_polygon.hpp"
 #include "scree/detect/grid_maker.hpp"
+#include "scree/detect/moving_boxes.hpp"
 #include "scree/detect/moving_tracker.hpp"
 #include "scree/detect/tracker.hpp"
 #include "scree/sync/sync_buffer.hpp"
@@ -27,7 +27,8 @@ struct Networks {
 };
 
 /// From sweeps and motion samples to obstacle lists: the daemon and `scree detect` both run this.
-/// Each sweep is added to the map, and obstacles are found in the map. As long as no IMU and no
+/// Each sweep is added to the map, and obstacles are found in the map; what moves is found in the
+/// sweep itself, and stays out of the map. As long as no IMU and no
 /// encoder has said anything, each sweep is taken by itself instead, and `odom` is `base`; an
 /// obstacle then keeps its id while it moves little from sweep to sweep. Memory is taken once, when
 /// it is made.
@@ -67,9 +68,7 @@ public:
 
 private:
   void detect_in_map();
-  void find_moving();
-  void hand_over_standing();
-  Obstacle moving_obstacle(std::span<const std::uint32_t> members);
+  void add_moving();
   float ground_at(const Eigen::Vector3d& place) const;
   void detect_in_sweep(const Sweep& sweep);
 
@@ -79,9 +78,7 @@ private:
   Detector map_detector_, sweep_detector_;
   Tracker tracker_, sweep_tracker_;
   MovingTracker moving_tracker_;
-  EnclosingPolygons polygons_;
-  PointCloud moving_points_;
-  FixedVector<std::uint32_t> order_;
+  MovingBoxes moving_boxes_;
   SweepTrajectory still_;
   DeskewedSweep sweep_;  // of a robot that stands
   FixedVector<Obstacle> found_;

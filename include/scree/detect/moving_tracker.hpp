@@ -7,6 +7,7 @@
 
 #include "scree/core/fixed_vector.hpp"
 #include "scree/core/obstacle.hpp"
+#include "scree/detect/tracker.hpp"
 
 namespace scree {
 
@@ -37,19 +38,27 @@ public:
               std::int64_t& next_id);
   void clear() { tracks_.clear(); }
 
+  /// Adds the published ones to a list. An obstacle of the list in the same place goes. Where one
+  /// that was followed has come to stand, and the list has it, it keeps its id there.
+  /// @param list of what stands, in the map's frame
+  /// @param standing that made the list
+  void add_to(FixedVector<Obstacle>& list, Tracker& standing);
+
   std::span<const Track> tracks() const { return {tracks_.data(), tracks_.size()}; }
-  /// The obstacle of a track as it is published; velocity zero where it hardly moves.
-  static Obstacle published(const Track& track);
-  void end(std::int64_t id);
+  /// Things that no track had room for, and obstacles that did not fit into the list.
+  std::uint64_t dropped() const { return dropped_; }
 
 private:
   void predict(std::int64_t stamp_ns);
   void associate(std::span<const Obstacle> found, std::int64_t stamp_ns);
+  void hand_over(FixedVector<Obstacle>& list, Tracker& standing);
+  static Obstacle published(const Track& track);
   static void add_found(const Obstacle& found, std::int64_t stamp_ns, Track& track);
 
   FixedVector<Track> tracks_;
   FixedVector<std::uint8_t> is_taken_;
   std::int64_t stamp_ns_ = 0;
+  std::uint64_t dropped_ = 0;
 };
 
 }  // namespace scree

@@ -13,7 +13,11 @@ namespace scree {
 /// @param pose `base` in the frame of the obstacle
 bool is_in_zone(const StopSettings& zone, const Pose& pose, const Obstacle& obstacle);
 
-/// Decides what the stop line says: on while the robot is blind or an obstacle is in the zone, and
+/// Whether an obstacle is in the zone or will be within the hold time, as it moves now.
+bool will_be_in_zone(const StopSettings& zone, const Pose& pose, const Obstacle& obstacle);
+
+/// Decides what the stop line says: on while the robot is blind or an obstacle is in the zone or
+/// comes into it within the hold time, and
 /// for `hold` after that. It begins blind. Times are of any clock that runs steadily.
 class StopLine {
 public:

@@ -40,7 +40,8 @@ public:
   const Pose& to_odom() const { return levelling_.to_odom(); }
   const PoseFilter& filter() const { return filter_; }
   const RollingMap& map() const { return map_; }
-  RollingMap& map() { return map_; }
+  /// As RollingMap::remove_left().
+  bool remove_left(const Obstacle& obstacle) { return map_.remove_left(obstacle); }
   const MotionStep& step() const { return step_; }
   const Registration::Outcome& registration() const { return outcome_; }
   /// Whether the map began anew with the last sweep, because its frame was found wrong.

@@ -52,7 +52,7 @@ public:
 
   /// Removes what was seen in an obstacle's box when it has left: beams go through nearly
   /// everywhere in it. To be called after a sweep was added; the cloud is without it from then on.
-  /// @param obstacle one that stands up, in the map's frame
+  /// @param obstacle in the map's frame; a low one is never said to have left
   /// @return whether it has left
   bool remove_left(const Obstacle& obstacle);
   /// In the map's frame.
