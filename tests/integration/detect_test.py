@@ -15,7 +15,7 @@ from synthetic_capture import PACKET_NS, data_packet, frame
 
 SCREE, DATA = sys.argv[1:3]
 PAPER = os.path.join(os.path.dirname(__file__), "..", "..", "config", "paper.toml")
-KEYS = ["id", "kind", "confidence", "center", "extent", "yaw", "height", "points"]
+KEYS = ["id", "kind", "confidence", "center", "extent", "yaw", "height", "velocity", "points"]
 
 
 class DetectTest(ProgramTest):

@@ -17,8 +17,8 @@ bool is_in_zone(const StopSettings& zone, const Pose& pose, const Obstacle& obst
 bool will_be_in_zone(const StopSettings& zone, const Pose& pose, const Obstacle& obstacle);
 
 /// Decides what the stop line says: on while the robot is blind or an obstacle is in the zone or
-/// comes into it within the hold time, and
-/// for `hold` after that. It begins blind. Times are of any clock that runs steadily.
+/// comes into it within the hold time, and for `hold` after that. It begins blind. Times are of any
+/// clock that runs steadily.
 class StopLine {
 public:
   explicit StopLine(const StopSettings& settings) : settings_(settings) {}

@@ -21,6 +21,7 @@ ObstacleList example() {
   rock.height = 0.42;
   rock.points = 118;
   Obstacle hole = rock;
+  rock.velocity = {-0.5, 1.25};
   hole.id = 8;
   hole.kind = ObstacleKind::negative;
   hole.height = -1.0 / 3;
@@ -32,14 +33,16 @@ ObstacleList example() {
 TEST(Jsonl, WritesTheTextOfTheInterface) {
   std::string text;
   append_json_line(example(), text);
-  EXPECT_EQ(text,
-            "{\"stamp_ns\": 1598601600123456789, \"pose\": {\"p\": [1.5, -0.25, 0], "
-            "\"q\": [1, 0, 0, 0]}, \"obstacles\": ["
-            "{\"id\": 7, \"kind\": \"positive\", \"confidence\": 0.98, \"center\": [4.25, 1, 0.1], "
-            "\"extent\": [0.5, 0.4, 0.42], \"yaw\": 0.3, \"height\": 0.42, \"points\": 118}, "
-            "{\"id\": 8, \"kind\": \"negative\", \"confidence\": 0.98, \"center\": [4.25, 1, 0.1], "
-            "\"extent\": [0.5, 0.4, 0.42], \"yaw\": 0.3, \"height\": -0.3333333333333333, "
-            "\"points\": 118}]}\n");
+  EXPECT_EQ(
+      text,
+      "{\"stamp_ns\": 1598601600123456789, \"pose\": {\"p\": [1.5, -0.25, 0], "
+      "\"q\": [1, 0, 0, 0]}, \"obstacles\": ["
+      "{\"id\": 7, \"kind\": \"positive\", \"confidence\": 0.98, \"center\": [4.25, 1, 0.1], "
+      "\"extent\": [0.5, 0.4, 0.42], \"yaw\": 0.3, \"height\": 0.42, \"velocity\": [-0.5, 1.25], "
+      "\"points\": 118}, "
+      "{\"id\": 8, \"kind\": \"negative\", \"confidence\": 0.98, \"center\": [4.25, 1, 0.1], "
+      "\"extent\": [0.5, 0.4, 0.42], \"yaw\": 0.3, \"height\": -0.3333333333333333, "
+      "\"velocity\": [0, 0], \"points\": 118}]}\n");
 }
 
 TEST(Jsonl, WritesAGridAsRunsOfStates) {

@@ -32,6 +32,7 @@ ObstacleList list_of(std::size_t size) {
     obstacle.extent = {0.1, 0.2, 0.3};
     obstacle.yaw = -0.4;
     obstacle.height = 0.5;
+    obstacle.velocity = {0.25, -1.0 / 7};
     obstacle.points = 12;
     obstacle.evidence = static_cast<Evidence>(i % kEvidenceNames.size());
     for (std::size_t corner = 0; i % 3 != 0 && corner < 3 + i % 14; ++corner) {

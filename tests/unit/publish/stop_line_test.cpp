@@ -56,6 +56,22 @@ TEST(IsInZone, TheZoneMovesWithTheRobot) {
   EXPECT_FALSE(is_in(box(10, -2.85, 0.4, 0.05, 0), pose));
 }
 
+TEST(WillBeInZone, LooksAheadAsLongAsTheLineHolds) {
+  Obstacle walker = box(1, 1.2, 0.2, 0.2);
+  EXPECT_FALSE(will_be_in_zone(kZone, {}, walker));
+  walker.velocity = {0, -1.3};
+  EXPECT_TRUE(will_be_in_zone(kZone, {}, walker)) << "in 0.46 s";
+  walker.velocity = {0, -1.1};
+  EXPECT_FALSE(will_be_in_zone(kZone, {}, walker)) << "in 0.55 s";
+  walker.velocity = {0, 2};
+  EXPECT_FALSE(will_be_in_zone(kZone, {}, walker));
+  walker.center.y() = 0;
+  EXPECT_TRUE(will_be_in_zone(kZone, {}, walker)) << "now";
+  walker.center.y() = 5;
+  walker.velocity = {0, -15};
+  EXPECT_TRUE(will_be_in_zone(kZone, {}, walker)) << "and out again";
+}
+
 /// Against points: a box overlaps the zone when one of many points of it lies inside.
 TEST(IsInZone, AgreesWithPoints) {
   std::mt19937 random(1);

@@ -75,6 +75,33 @@ TEST(Truth, PosesAreInterpolated) {
   EXPECT_EQ(truth->pose_at(1000).translation.x(), 2);
 }
 
+TEST(Truth, ATrackMovesTheFootprint) {
+  const auto truth = read(with("\"shape\"",
+                               "\"track\": [[100, 1, 2, 0], [200, 3, 2, 3], "
+                               "[300, 3, 4, -3]], \"shape\""));
+  ASSERT_TRUE(truth) << truth.error().message;
+  const TrueObstacle& walker = truth->obstacles[0];
+  ASSERT_TRUE(walker.moves());
+  EXPECT_FALSE(truth->obstacles[1].moves());
+  EXPECT_EQ(walker.at(0).center, walker.center);
+  EXPECT_EQ(walker.at(100).footprint, walker.footprint);
+  const TrueObstacle half = walker.at(150);
+  EXPECT_NEAR(half.center.x(), 2, 1e-9);
+  EXPECT_EQ(half.center.z(), walker.center.z());
+  // The corner (0, 0) lies 1 m behind and 2 m right of the place, and turns by 1.5 rad.
+  EXPECT_NEAR(half.footprint[0].x(), 2 - std::cos(1.5) + 2 * std::sin(1.5), 1e-9);
+  EXPECT_NEAR(half.footprint[0].y(), 2 - std::sin(1.5) - 2 * std::cos(1.5), 1e-9);
+  // From 3 to -3 rad it turns the short way.
+  EXPECT_NEAR(walker.at(250).footprint[0].x(), 3 + std::cos(0.0), 0.01);
+  EXPECT_EQ(walker.at(400).center.y(), 4);
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_truth(folder / "again.json", *truth));
+  const auto again = read_truth(folder / "again.json");
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->obstacles[0].track.size(), 3U);
+  EXPECT_EQ(again->obstacles[0].at(250).center, walker.at(250).center);
+}
+
 TEST(Truth, ARefusalNamesFileAndPlace) {
   const std::vector<std::pair<std::string, std::string>> cases = {
       {with("0.4, \"shape\"", "null, \"shape\""), "obstacles[0].height: expected a number"},
@@ -85,6 +112,10 @@ TEST(Truth, ARefusalNamesFileAndPlace) {
       {with("[[0, 0], [1, 0], [1, 1]]", "[]"), "obstacles[0].footprint: it has no area"},
       {with("[[0, 0], [1, 0], [1, 1]]", "[[0, 0], [1, 1], [2, 2]]"), "has no area"},
       {with("[[0, 0], [1, 0], [1, 1]]", "[[0, 0], 7]"), "footprint[1]: expected an array"},
+      {with("\"shape\"", "\"track\": [], \"shape\""), "obstacles[0].track: it has no place"},
+      {with("\"shape\"", "\"track\": [[1, 2, 3]], \"shape\""), "track[0]: expected 4 items"},
+      {with("\"shape\"", "\"track\": [[2, 0, 0, 0], [1, 0, 0, 0]], \"shape\""),
+       "track[1][0]: 1 is before"},
       {with("\"positive\"", "\"upward\""), "obstacles[0].kind: unknown kind \"upward\""},
       {with("\"id\": 4", "\"id\": 1"), "obstacles[1].id: 1 stands twice"},
       {with("\"id\": 4", "\"id\": 4.5"), "obstacles[1].id: expected a whole number"},

@@ -61,13 +61,13 @@ TEST(FreeSpace, CountsTheBeamsThatEnd) {
   EXPECT_EQ(space.hit_ratio(point), 1) << "no beam came there";
   space.add_misses(point, 7, 3);
   EXPECT_EQ(space.hit_ratio(point), 0);
-  space.add_hit(point);
-  space.add_hit(other);
+  space.add_hit(point, 7);
+  space.add_hit(other, 7);
   EXPECT_EQ(space.hit_ratio(point), 0.25F);
   EXPECT_EQ(space.hit_ratio(other), 1);
   EXPECT_EQ(space.last_miss(point), 7U);
   EXPECT_EQ(space.last_miss(other), 0U) << "none went through";
-  space.add_hit(point + Eigen::Vector3f(32, 0, 0));
+  space.add_hit(point + Eigen::Vector3f(32, 0, 0), 8);
   EXPECT_EQ(space.hit_ratio(point), 1) << "forgotten";
 }
 
@@ -76,7 +76,7 @@ TEST(FreeSpace, ASmallShareIsKeptOverMillionsOfBeams) {
   const Eigen::Vector3f point(1, 1, 0.1F);
   for (int i = 0; i < 1'000'000; ++i) {
     if (i % 20 == 0) {
-      space.add_hit(point);
+      space.add_hit(point, 1);
     } else {
       space.add_misses(point, 1, 1);
     }
@@ -90,8 +90,64 @@ TEST(FreeSpace, WhatComesToAPlaceLongFreeShowsAfterAHundredBeams) {
   FreeSpace space;
   const Eigen::Vector3f point(1, 1, 0.1F);
   for (int i = 0; i < 1'000'000; ++i) space.add_misses(point, 1, 4);
-  for (int i = 0; i < 100; ++i) space.add_hit(point);
+  for (int i = 0; i < 100; ++i) space.add_hit(point, 1);
   EXPECT_GT(space.hit_ratio(point), 0.045F);
+}
+
+constexpr float kCell = FreeSpace::kCell;
+const Eigen::Vector3f kHere(1.1F, 1.1F, 0.6F), kUp(0, 0, kCell);
+
+/// Beams go through a place in the sweeps from `first` on.
+void pass(FreeSpace& space, const Eigen::Vector3f& point, std::uint32_t first, int sweeps) {
+  for (int i = 0; i < sweeps; ++i) space.add_misses(point, first + static_cast<unsigned>(i), 4);
+}
+
+TEST(FreeSpace, APlaceIsClearAfterSeveralSweepsWentThrough) {
+  FreeSpace space;
+  EXPECT_FALSE(space.is_clear(kHere)) << "unknown";
+  pass(space, kHere, 2, 3);
+  EXPECT_FALSE(space.is_clear(kHere));
+  pass(space, kHere, 5, 1);
+  EXPECT_TRUE(space.is_clear(kHere));
+  space.clear();
+  EXPECT_FALSE(space.is_clear(kHere));
+}
+
+TEST(FreeSpace, BesideSomethingNothingIsClear) {
+  FreeSpace space;
+  space.add_hit(kHere + kUp, 1);
+  pass(space, kHere, 3, 40);
+  EXPECT_FALSE(space.is_clear(kHere));
+  pass(space, kHere - kUp, 3, 40);
+  EXPECT_TRUE(space.is_clear(kHere - kUp)) << "two cells away";
+}
+
+TEST(FreeSpace, AClearPlaceStaysSoWhileSomethingPassesAndNotWhenItStays) {
+  FreeSpace space;
+  pass(space, kHere, 2, 10);
+  pass(space, kHere + kUp, 2, 10);
+  for (std::uint32_t sweep = 12; sweep < 24; ++sweep) space.add_hit(kHere, sweep);
+  EXPECT_TRUE(space.is_clear(kHere));
+  EXPECT_TRUE(space.is_clear(kHere + kUp));
+  pass(space, kHere, 26, 5);
+  for (std::uint32_t sweep = 31; sweep < 50; ++sweep) space.add_hit(kHere, sweep);
+  EXPECT_TRUE(space.is_clear(kHere)) << "it left between";
+  space.add_hit(kHere, 50);
+  EXPECT_FALSE(space.is_clear(kHere));
+  EXPECT_FALSE(space.is_clear(kHere + kUp)) << "what stays may reach into the next cell";
+}
+
+TEST(FreeSpace, TellsWhatIsThereFromWhatHasLeft) {
+  using Presence = FreeSpace::Presence;
+  FreeSpace space;
+  EXPECT_EQ(space.presence(kHere, 1), Presence::unknown);
+  for (std::uint32_t sweep = 1; sweep < 10; ++sweep) space.add_hit(kHere, sweep);
+  EXPECT_EQ(space.presence(kHere, 11), Presence::there);
+  EXPECT_EQ(space.presence(kHere, 12), Presence::unknown) << "out of sight";
+  pass(space, kHere, 11, 2);
+  EXPECT_EQ(space.presence(kHere, 12), Presence::gone);
+  EXPECT_TRUE(space.is_seen_through(kHere, 13));
+  EXPECT_FALSE(space.is_seen_through(kHere, 14));
 }
 
 }  // namespace

@@ -154,6 +154,7 @@ TEST_F(RegistrationTest, KeyPointsAreChosenByTheirNormals) {
       sweep_.origins.push_back(Eigen::Vector3f(0, 0, 1));
       sweep_.scatter.push_back(0);
       sweep_.is_isolated.push_back(0);
+      sweep_.is_moving.push_back(0);
     }
   }
   registration_.align(sweep_, map_, filter_);
@@ -201,6 +202,7 @@ TEST_F(RegistrationTest, ADitchLeavesTheDirectionAlongIt) {
       sweep_.origins.push_back(Eigen::Vector3f(0, 0, 1));
       sweep_.scatter.push_back(0);
       sweep_.is_isolated.push_back(0);
+      sweep_.is_moving.push_back(0);
     }
   }
   registration_.align(sweep_, map_, filter_);

@@ -34,6 +34,7 @@ public:
           sweep_.origins.push_back(kLidar.cast<float>());
           sweep_.scatter.push_back(0);
           sweep_.is_isolated.push_back(0);
+          sweep_.is_moving.push_back(0);
         }
       }
       map_.add(sweep_, Pose(), now_ns_ += 100'000'000);

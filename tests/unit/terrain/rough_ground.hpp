@@ -80,6 +80,7 @@ inline void look(const RoughGround& ground, const Pose& pose, double reach, doub
       sweep.origins.push_back(Eigen::Vector3f(0, 0, 1));
       sweep.scatter.push_back(0);
       sweep.is_isolated.push_back(0);
+      sweep.is_moving.push_back(0);
     }
   }
 }
