@@ -48,7 +48,8 @@ private:
 };
 
 void skip_obstacle(Walk& walk) {
-  // Before the corners: id, kind, confidence; center, extent, yaw, height, velocity; points, evidence.
+  // Before the corners: id, kind, confidence; center, extent, yaw, height, velocity; points,
+  // evidence.
   walk.skip(kLong + kByte + kFloat + 10 * kDouble + kInt + kByte);
   const std::size_t corners = walk.count();
   walk.skip(2 * kDouble, corners);
