@@ -8,8 +8,6 @@ namespace {
 
 constexpr std::uint32_t kEnd = std::numeric_limits<std::uint32_t>::max();
 
-constexpr std::size_t kFewest = 6;  // points
-
 enum State : std::uint8_t { empty, seeded, taken, moving };
 
 }  // namespace
@@ -36,6 +34,7 @@ std::size_t MovingPoints::cell_of(float x, float y) const {
 
 void MovingPoints::find(DeskewedSweep& sweep, const Pose& pose, const FreeSpace& free_space,
                         float reach) {
+  constexpr std::size_t kFewest = 6;  // points
   sweep.is_moving.assign(sweep.points.size(), 0);
   members_.clear();
   begin_.clear();
