@@ -23,7 +23,7 @@ void PipelineProcessor::add_drops() {
   drops_.obstacles += counts.obstacles_dropped;
   // These two count since the start themselves.
   drops_.map_points = pipeline_.mapper().map().dropped();
-  drops_.tracks = pipeline_.tracker().dropped();
+  drops_.tracks = pipeline_.tracks_dropped();
 }
 
 MotionReport PipelineProcessor::motion_report() const {

@@ -54,7 +54,6 @@ void deskew(const Sweep& sweep, const LidarSettings& lidar, const SweepTrajector
     out.origins.push_back(to_base.translation);
     scatter.add(sweep.laser[i], in_lidar, out.scatter, out.is_isolated);
   }
-  out.is_moving.assign(out.points.size(), 0);
   for (const EmptyShot& shot : sweep.empty) {
     const SweepTrajectory::Transform& to_base = lidar_trajectory.at(shot.time_ns);
     out.empty.push_back({to_base.translation, to_base.rotation * shot.end + to_base.translation});

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "scree/core/random.hpp"
+#include "simulator/building.hpp"
 #include "simulator/curves.hpp"
 #include "simulator/movers.hpp"
 
@@ -21,15 +22,8 @@ Volume ellipsoid(const Eigen::Vector3d& center, const Eigen::Vector3d& half) {
   return volume;
 }
 
-Footprint rectangle_around(double half_length, double half_width) {
-  return {{half_length, half_width},
-          {-half_length, half_width},
-          {-half_length, -half_width},
-          {half_length, -half_width}};
-}
-
 void finish(Mover& mover, double half_length, double half_width, double height, Random& random) {
-  mover.footprint = rectangle_around(half_length, half_width);
+  mover.footprint = rectangle({0, 0}, {half_length, half_width}, 0);
   mover.radius = std::hypot(half_length, half_width);
   mover.height = height;
   const double brightness = random.uniform(8, 60);

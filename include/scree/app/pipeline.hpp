@@ -28,10 +28,9 @@ struct Networks {
 
 /// From sweeps and motion samples to obstacle lists: the daemon and `scree detect` both run this.
 /// Each sweep is added to the map, and obstacles are found in the map; what moves is found in the
-/// sweep itself, and stays out of the map. As long as no IMU and no
-/// encoder has said anything, each sweep is taken by itself instead, and `odom` is `base`; an
-/// obstacle then keeps its id while it moves little from sweep to sweep. Memory is taken once, when
-/// it is made.
+/// sweep itself, and stays out of the map. As long as no IMU and no encoder has said anything, each
+/// sweep is taken by itself instead, and `odom` is `base`; an obstacle then keeps its id while it
+/// moves little from sweep to sweep. Memory is taken once, when it is made.
 class Pipeline {
 public:
   /// @param config_file its folder is searched first for the weights files; it may be empty
@@ -62,6 +61,10 @@ public:
   const PointCloud& ground() const { return uses_map_ ? mapper_->map().cloud() : sweep_.points; }
   const Mapper& mapper() const { return *mapper_; }
   const Tracker& tracker() const { return uses_map_ ? tracker_ : sweep_tracker_; }
+  /// What the trackers had no room for, standing or moving.
+  std::uint64_t tracks_dropped() const {
+    return tracker().dropped() + moving_tracker_.dropped() + moving_boxes_.dropped();
+  }
   bool uses_map() const { return uses_map_; }
   /// What the detector counted in the last sweep; points that did not get to it are dropped ones.
   StageCounts counts() const;

@@ -18,8 +18,9 @@ struct DeskewedSweep {
   FixedVector<Eigen::Vector3f> origins;   ///< the lidar's origin at each point's time, same frame
   FixedVector<float> scatter;             ///< of each point, see RangeScatter; metres
   FixedVector<std::uint8_t> is_isolated;  ///< whether it ends alone, see RangeScatter
-  FixedVector<std::uint8_t> is_moving;  ///< whether it is on something that moves, see MovingPoints
-  FixedVector<EmptyBeam> empty;         ///< same frame
+  FixedVector<std::uint8_t>
+      is_moving;                 ///< set by MovingPoints: whether it is on something that moves
+  FixedVector<EmptyBeam> empty;  ///< same frame
   std::size_t dropped = 0;
 
   explicit DeskewedSweep(std::size_t capacity)

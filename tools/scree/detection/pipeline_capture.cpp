@@ -26,7 +26,7 @@ void warn_of_losses(Pipeline& pipeline, const WaitingSweeps& sweeps) {
   warn("map", mapper.slips(),
        "sweeps during which the wheel slipped; it was not believed (in all of them: encoder.scale "
        "is wrong, or its sign)");
-  warn("tracks", pipeline.tracker().dropped(), "found no room: raise memory.obstacles");
+  warn("tracks", pipeline.tracks_dropped(), "found no room: raise memory.obstacles");
   warn("IMU", pipeline.sensors().heading().corrections(),
        "turns of its yaw that its angular rate did not know of; they were not believed");
   warn("motion", pipeline.sensors().dropped(), "samples of IMU or encoder found no room");
