@@ -102,6 +102,7 @@ void SurfaceRung::measure_clusters() {
     cluster.ground = surface_.height(cluster.box.center_x, cluster.box.center_y);
     cluster.features = measure(kept_, members);
     context_.measure(cluster, members, kept_, surface_, beam_grid_);
+    cluster.evidence = Evidence::inside;  // a rung asks for none
   }
 }
 
