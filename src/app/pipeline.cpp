@@ -144,7 +144,9 @@ float Pipeline::ground_at(const Eigen::Vector3d& place) const {
 }
 
 void Pipeline::detect_in_sweep(const Sweep& sweep) {
-  deskew(sweep, lidar_, still_, sweep_);
+  OwnReturns& own = mapper_->own_returns();
+  deskew(sweep, lidar_, still_, own, sweep_);
+  own.end_sweep(0);
   timer_.done(Stage::motion);
   sweep_detector_.detect(
       {.points = sweep_.points, .origins = sweep_.origins, .robot = Eigen::Vector2f::Zero()},

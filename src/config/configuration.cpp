@@ -124,6 +124,8 @@ private:
       value = **node.as_string();
     } else if constexpr (std::is_same_v<T, Eigen::Vector3d>) {
       read_vector(key, node, value);
+    } else if constexpr (std::is_same_v<T, std::vector<BodyBox>>) {
+      read_boxes(key, node, value);
     } else {
       read_choice(key, node, value);
     }
@@ -140,6 +142,30 @@ private:
       const double read = *element.value<double>();
       if (!in_range(key, element, read)) return;
       value[static_cast<Eigen::Index>(i)] = read;
+    }
+  }
+
+  void read_boxes(const Key& key, const toml::node& node, std::vector<BodyBox>& value) {
+    constexpr std::size_t kMostBoxes = 64;
+    constexpr std::string_view kForm = "must be boxes, [[[x, y, z], [x, y, z]], ...]";
+    const toml::array* boxes = node.as_array();
+    if (boxes == nullptr) return refuse_with_range(key, node, kForm);
+    if (boxes->size() > kMostBoxes) {
+      return refuse(node, full_name(key),
+                    fmt::format("has {} boxes, {} are the most", boxes->size(), kMostBoxes));
+    }
+    value.clear();
+    for (const toml::node& each : *boxes) {
+      const toml::array* corners = each.as_array();
+      if (corners == nullptr || corners->size() != 2) return refuse_with_range(key, each, kForm);
+      Eigen::Vector3d first = Eigen::Vector3d::Zero(), second = first;
+      read_vector(key, *corners->get(0), first);
+      read_vector(key, *corners->get(1), second);
+      value.push_back({first.cwiseMin(second), first.cwiseMax(second)});
+      if ((value.back().low.array() == value.back().high.array()).any()) {
+        return refuse(each, full_name(key),
+                      "has a box without inside: its corners share a coordinate");
+      }
     }
   }
 

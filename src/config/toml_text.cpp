@@ -32,6 +32,14 @@ std::string toml_value(const Eigen::Vector3d& value) {
   return fmt::format("[{}, {}, {}]", toml_value(value.x()), toml_value(value.y()),
                      toml_value(value.z()));
 }
+std::string toml_value(const std::vector<BodyBox>& value) {
+  std::string text;
+  for (const BodyBox& box : value) {
+    text += fmt::format("{}[{}, {}]", text.empty() ? "" : ", ", toml_value(box.low),
+                        toml_value(box.high));
+  }
+  return "[" + text + "]";
+}
 template <class Enum>
 requires std::is_enum_v<Enum> std::string toml_value(Enum value) {
   return fmt::format("\"{}\"", name_of(value));

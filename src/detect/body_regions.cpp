@@ -9,6 +9,13 @@
 #include "scree/detect/union_find.hpp"
 
 namespace scree {
+namespace {
+
+constexpr float kSolidBeams = 4;  // stopped: fewer may be chance
+constexpr float kHanging = 1.3F;  // metres: a crown of leaves begins there, tables end below
+
+}  // namespace
+
 BodyRegions::BodyRegions(std::size_t max_points, std::size_t max_cells)
     : state_(max_cells),
       grown_(max_cells),
@@ -49,9 +56,12 @@ void BodyRegions::mark(const CandidatePoints& bodies, Side side, const GroundSur
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if ((bodies.height[i] > 0) != (side == Side::above)) continue;
     const std::size_t cell = surface.cell_at(bodies.points.x[i], bodies.points.y[i]);
-    state_[cell] = side == Side::above && solidity.is_loose(cell) ? loose : firm;
+    const State state = bodies.height[i] > kHanging                      ? hanging
+                        : side == Side::above && solidity.is_loose(cell) ? loose
+                                                                         : firm;
+    state_[cell] = std::max(state_[cell], state);
     // Holes have no tops: their floors are seldom seen, and what is seen of a wall has any depth.
-    const float share = solidity.ended_share(cell);
+    const float share = solidity.solid(cell) >= kSolidBeams ? 1.0F : solidity.ended_share(cell);
     top_[cell] = std::max(top_[cell], bodies.height[i] * (share * share));
   }
 }
@@ -84,7 +94,7 @@ void BodyRegions::join(float saddle) {
   constexpr float kHighest = 65, kStep = 0.001F, kLeastRise = 0.06F;  // metres
   order_.clear();
   for (std::size_t cell = 0; cell < state_.size(); ++cell) {
-    if (state_[cell] < loose) continue;
+    if (state_[cell] < hanging) continue;
     order_.push(static_cast<std::uint64_t>(std::max(kHighest - top_[cell], 0.0F) / kStep), cell);
   }
   order_.sort();

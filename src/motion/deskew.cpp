@@ -35,7 +35,7 @@ private:
 }  // namespace
 
 void deskew(const Sweep& sweep, const LidarSettings& lidar, const SweepTrajectory& trajectory,
-            DeskewedSweep& out) {
+            OwnReturns& own, DeskewedSweep& out) {
   const auto nearest = static_cast<float>(lidar.min_range * lidar.min_range);
   const auto farthest = static_cast<float>(lidar.max_range * lidar.max_range);
   out.clear();
@@ -45,6 +45,7 @@ void deskew(const Sweep& sweep, const LidarSettings& lidar, const SweepTrajector
     const Eigen::Vector3f in_lidar(sweep.points.x[i], sweep.points.y[i], sweep.points.z[i]);
     const float square = in_lidar.squaredNorm();
     if (!(square >= nearest && square <= farthest)) continue;  // nor what is not a number
+    if (own.take(in_lidar)) continue;
     const SweepTrajectory::Transform& to_base = lidar_trajectory.at(sweep.time_ns[i]);
     const Eigen::Vector3f point = to_base.rotation * in_lidar + to_base.translation;
     if (!out.points.push_back(point.x(), point.y(), point.z(), sweep.points.reflectivity[i])) {
@@ -52,6 +53,7 @@ void deskew(const Sweep& sweep, const LidarSettings& lidar, const SweepTrajector
       continue;
     }
     out.origins.push_back(to_base.translation);
+    out.is_suspect.push_back(own.is_suspect() ? 1 : 0);
     scatter.add(sweep.laser[i], in_lidar, out.scatter, out.is_isolated);
   }
   for (const EmptyShot& shot : sweep.empty) {

@@ -22,6 +22,7 @@ Mapper::Mapper(const Settings& settings)
       dead_reckoning_(settings.imu.mount().rotation),
       slip_detector_(settings.imu.mount().rotation, settings.imu.translation,
                      settings.encoder.max_speed),
+      own_returns_(settings.robot.body, settings.lidar.mount()),
       sweep_(static_cast<std::size_t>(settings.memory.sweep_points)),
       levelling_(settings.imu.translation),
       registration_(static_cast<std::size_t>(settings.memory.sweep_points)),
@@ -39,12 +40,14 @@ void Mapper::add(const Sweep& sweep, const SyncBuffer& sensors, StageTimer& time
   const bool was_silent = has_known_attitude && !filter_.knows_attitude();
   filter_.predict(step_);
   was_reset_ = filter_.has_known_attitude() && !has_known_attitude;
+  deskew(sweep, lidar_, trajectory_, own_returns_, sweep_);
+  // Of what was mapped before, an own return has left a trail.
+  if (notice_own_returns()) was_reset_ = true;
+  // ... or it is tilted as the robot stood.
   if (was_reset_) {
-    // What was mapped before is tilted as the robot stood.
     surfels_.clear();
     map_.clear();
   }
-  deskew(sweep, lidar_, trajectory_, sweep_);
   timer.done(Stage::motion);
   const Eigen::Quaterniond predicted = pose().rotation;
   outcome_ = {};
@@ -61,6 +64,13 @@ void Mapper::add(const Sweep& sweep, const SyncBuffer& sensors, StageTimer& time
                                            : std::numeric_limits<double>::infinity();
   map_.add(sweep_, filter_.pose(), sweep.end_ns, reach);
   timer.done(Stage::map);
+}
+
+bool Mapper::notice_own_returns() {
+  constexpr double kArm = 0.5;  // metres: as OwnReturns counts turns
+  const bool is_known = step_.knows_distance && !slip_detector_.slips();
+  const double way = is_known ? std::abs(step_.distance) + kArm * step_.rotation_angle() : 0;
+  return own_returns_.end_sweep(static_cast<float>(way));
 }
 
 void Mapper::detect_slip(const SyncBuffer& sensors, std::int64_t end_ns) {

@@ -53,7 +53,7 @@ void Registration::choose_key_points(const DeskewedSweep& sweep, SurfelMap& map,
   bins_.resize(sweep.points.size());
   for (std::size_t i = 0; i < sweep.points.size(); ++i) {
     const Eigen::Vector3f point(sweep.points.x[i], sweep.points.y[i], sweep.points.z[i]);
-    const Surfel* surfel = map.at(transformed(pose, point));
+    const Surfel* surfel = sweep.is_suspect[i] != 0 ? nullptr : map.at(transformed(pose, point));
     bins_[i] = surfel == nullptr ? kNone : static_cast<std::uint8_t>(bin_of(surfel->normal));
     if (surfel != nullptr) ++sizes[bins_[i]];
   }

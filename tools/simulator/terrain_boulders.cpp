@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint64_t kBoulders = 900;
 constexpr double kLeastRock = 0.3;     // metres high: asked for
 constexpr double kLeastStone = 0.12;   // metres high: neither asked for nor wrong
-constexpr double kNamedWithin = 14;    // metres of the robot's way: nobody asks farther away
+constexpr double kNamedWithin = 14;    // metres of a robot's way: nobody asks farther away
 constexpr double kLeastVisible = 0.5;  // share of its outline that others do not cover
 
 /// Lengths of a field's boulders, the longest first: together they cover the wanted share.
@@ -54,7 +54,8 @@ void Terrain::strew_boulders(std::uint64_t seed) {
     if (relief(at.x(), at.y()) > boulder.height() / 2 && !random.chance(0.1)) continue;
     if (boulder.height() > kLeastStone && !ground.has_room(boulder.footprint(), 0.1)) continue;
     std::uint16_t part = 0;
-    if (boulder.height() > kLeastStone && way < kNamedWithin) {
+    const bool is_named = settings_.corridor.empty() || way < kNamedWithin;
+    if (boulder.height() > kLeastStone && is_named) {
       TerrainFeature feature;
       feature.id = static_cast<int>(features_.size()) + 1;
       feature.name = "boulder";

@@ -74,6 +74,11 @@ void for_every_key(AnySettings& settings, Visit&& visit) {
       "the same for a wheel that gains or loses speed faster; it spins up and is blocked faster "
       "than the robot, so leave room");
 
+  table = "robot";
+  key("body", settings.robot.body, "m", -100, 100,
+      "boxes of the robot's own body in base, [[[x, y, z], [x, y, z]], ...], each by two opposite "
+      "corners: returns from within are used for nothing");
+
   table = "gpio";
   auto& gpio = settings.gpio;
   key("pps", gpio.pps, "", 0, 0,

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "scree/core/pose.hpp"
 #include "scree/core/result.hpp"
@@ -129,6 +130,20 @@ struct EncoderSettings {
   }
 };
 
+/// A box of the robot's body in `base`, metres.
+struct BodyBox {
+  Eigen::Vector3d low, high;  ///< two opposite corners, low below high in each coordinate
+
+  bool operator==(const BodyBox&) const = default;
+  bool contains(const Eigen::Vector3d& place) const {
+    return (place.array() >= low.array()).all() && (place.array() <= high.array()).all();
+  }
+};
+
+struct RobotSettings {
+  std::vector<BodyBox> body;
+};
+
 struct GpioSettings {
   std::string pps, stop, heartbeat;
   bool pps_active_low = false, stop_active_low = false, heartbeat_active_low = false;
@@ -210,7 +225,7 @@ struct SurfaceSettings {
   double kernel_shared = 0;
 
   SurfaceClustering clustering = SurfaceClustering::euclidean;
-  double saddle = 0.4;
+  double saddle = 0.75;
   double cluster_tolerance = 0.20;
   int min_cluster_size = 4;
 };
@@ -273,6 +288,7 @@ struct Settings {
   LidarSettings lidar;
   ImuSettings imu;
   EncoderSettings encoder;
+  RobotSettings robot;
   GpioSettings gpio;
   StopSettings stop;
   DetectSettings detect_cloud = DetectSettings::for_cloud();

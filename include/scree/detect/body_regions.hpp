@@ -22,6 +22,7 @@ struct BodyRegionSettings {
 /// part nothing, and ground that was seen between two rocks does. Rocks that touch are parted by
 /// the watershed of their heights (Vincent and Soille, 1991), merged by the tops' prominence. What
 /// lets light through counts as lower than it is, so that a rock rises out of the grass around it.
+/// What hangs at the height of a crown is apart from what stands below it.
 class BodyRegions {
 public:
   BodyRegions(std::size_t max_points, std::size_t max_cells);
@@ -38,7 +39,7 @@ public:
   std::span<const std::uint32_t> sizes() const { return sizes_; }
 
 private:
-  enum State : std::uint8_t { unseen, clear, loose, firm };
+  enum State : std::uint8_t { unseen, clear, hanging, loose, firm };
   enum class Side : std::uint8_t { above, below };
 
   void mark(const CandidatePoints& bodies, Side side, const GroundSurface& surface,

@@ -3,6 +3,7 @@
 #include "scree/config/settings.hpp"
 #include "scree/core/point_cloud.hpp"
 #include "scree/core/sweep.hpp"
+#include "scree/motion/own_returns.hpp"
 #include "scree/motion/sweep_trajectory.hpp"
 
 namespace scree {
@@ -19,8 +20,9 @@ struct DeskewedSweep {
   FixedVector<float> scatter;             ///< of each point, see RangeScatter; metres
   FixedVector<std::uint8_t> is_isolated;  ///< whether it ends alone, see RangeScatter
   FixedVector<std::uint8_t>
-      is_moving;                 ///< set by MovingPoints: whether it is on something that moves
-  FixedVector<EmptyBeam> empty;  ///< same frame
+      is_moving;  ///< set by MovingPoints: whether it is on something that moves
+  FixedVector<std::uint8_t> is_suspect;  ///< whether it may be the robot's own, see OwnReturns
+  FixedVector<EmptyBeam> empty;          ///< same frame
   std::size_t dropped = 0;
 
   explicit DeskewedSweep(std::size_t capacity)
@@ -29,6 +31,7 @@ struct DeskewedSweep {
         scatter(capacity),
         is_isolated(capacity),
         is_moving(capacity),
+        is_suspect(capacity),
         empty(capacity) {}
 
   void clear() {
@@ -37,14 +40,16 @@ struct DeskewedSweep {
     scatter.clear();
     is_isolated.clear();
     is_moving.clear();
+    is_suspect.clear();
     empty.clear();
     dropped = 0;
   }
 };
 
 /// Moves every point of a sweep, in the `lidar` frame, to `base` at the sweep's end by the motion
-/// within it. Leaves out points nearer than min_range and farther than max_range.
+/// within it. Leaves out points nearer than min_range and farther than max_range, and the robot's
+/// own.
 void deskew(const Sweep& sweep, const LidarSettings& lidar, const SweepTrajectory& trajectory,
-            DeskewedSweep& out);
+            OwnReturns& own, DeskewedSweep& out);
 
 }  // namespace scree

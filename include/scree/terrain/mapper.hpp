@@ -50,11 +50,14 @@ public:
   std::uint64_t slips() const { return slips_; }
   /// What moves in the last sweep.
   const MovingPoints& moving() const { return moving_; }
+  const OwnReturns& own_returns() const { return own_returns_; }
+  OwnReturns& own_returns() { return own_returns_; }
   /// The last sweep in `base` at its end.
   const DeskewedSweep& sweep() const { return sweep_; }
 
 private:
   void detect_slip(const SyncBuffer& sensors, std::int64_t end_ns);
+  bool notice_own_returns();
   void add_surfels();
   void update_attitude_error(const Eigen::Quaterniond& predicted, bool was_silent);
   void extrapolate_motion(const Pose& before);
@@ -68,6 +71,7 @@ private:
   bool was_reset_ = false;
   double attitude_error_ = 0;  // rad, within a sweep; 0 while the IMU measures it
   SweepTrajectory trajectory_;
+  OwnReturns own_returns_;
   DeskewedSweep sweep_;
   PoseFilter filter_;
   Levelling levelling_;

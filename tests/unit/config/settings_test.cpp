@@ -52,6 +52,15 @@ TEST(Settings, ReadsEveryKindOfValue) {
   EXPECT_EQ(settings->detect_cloud.leaf_size, 0.1);
 }
 
+TEST(Settings, ReadsBoxesByAnyTwoCorners) {
+  const auto settings =
+      parse_settings("[robot]\nbody = [[[0.5, 0, 1], [-0.5, 1, 0]], [[1, 1, 1], [2, 2, 2]]]\n", "");
+  ASSERT_TRUE(settings) << settings.error().message;
+  ASSERT_EQ(settings->robot.body.size(), 2U);
+  EXPECT_EQ(settings->robot.body[0].low, Eigen::Vector3d(-0.5, 0, 0));
+  EXPECT_EQ(settings->robot.body[0].high, Eigen::Vector3d(0.5, 1, 1));
+}
+
 TEST(Settings, MistakesNameFileLineKeyAndWhatIsAccepted) {
   EXPECT_THAT(error_of("[lidar]\nport = 70000\n"),
               AllOf(HasSubstr("robot.toml:2: lidar.port"), HasSubstr("1 to 65535")));
@@ -60,6 +69,10 @@ TEST(Settings, MistakesNameFileLineKeyAndWhatIsAccepted) {
               AllOf(HasSubstr("lidar.model"), HasSubstr("\"puck_lite\"")));
   EXPECT_THAT(error_of("[lidar]\ntranslation = [1, 2]\n"),
               HasSubstr("three numbers, [x, y, z], accepted is -100 to 100 m"));
+  EXPECT_THAT(error_of("[robot]\nbody = [[0, 0, 0], [1, 1, 1]]\n"),
+              AllOf(HasSubstr("robot.toml:2: robot.body"), HasSubstr("three numbers")));
+  EXPECT_THAT(error_of("[robot]\nbody = [[[0, 0, 0]]]\n"), HasSubstr("[[[x, y, z], [x, y, z]]"));
+  EXPECT_THAT(error_of("[robot]\nbody = [[[0, 0, 0], [1, 0, 1]]]\n"), HasSubstr("without inside"));
   EXPECT_THAT(error_of("[lidar]\n\nprot = 2368\n"),
               AllOf(HasSubstr("robot.toml:3"),
                     HasSubstr("lidar.prot is not a setting; the nearest is lidar.port")));
@@ -190,8 +203,8 @@ TEST(Settings, ShippedFilesAreTheDefaults) {
 TEST(Settings, AKeyOfAnotherMethodIsAnErrorThatSaysSo) {
   EXPECT_THAT(error_of("[detect.cloud]\nedge_threshold = 0.3\n"),
               HasSubstr(":2: detect.cloud.edge_threshold is read only with method = \"edges\""));
-  EXPECT_THAT(error_of("[detect.cloud]\nsaddle = 0.3\n"),
-              HasSubstr("detect.cloud.saddle is read only with cluster_method = \"regions\""));
+  EXPECT_THAT(error_of("[detect.sweep]\nsaddle = 0.3\n"),
+              HasSubstr("detect.sweep.saddle is read only with cluster_method = \"regions\""));
   EXPECT_THAT(error_of("[detect.sweep]\nsuppression_radius = 0.3\n"),
               HasSubstr("is read only with suppression = true"));
   EXPECT_THAT(error_of("[detect.map]\ncluster_method = \"supervoxel\"\n"),

@@ -30,6 +30,7 @@ protected:
   test::SimpleDrive drive_ = test::helix(2, 0.8, 0.15, 0.1);
   LidarSettings lidar_ = mounted();
   Sweep sweep_{1 << 14};
+  OwnReturns own_{{}, lidar_.mount()};
   DeskewedSweep out_{1 << 14};
   SweepTrajectory trajectory_;
 
@@ -39,7 +40,7 @@ protected:
     DeadReckoning reckoning(drive_.imu_mount);
     sweep_.end_ns = test::nanoseconds(kEnd);
     reckoning.advance(*sensors, test::nanoseconds(kEnd - kLength), sweep_.end_ns, trajectory_);
-    deskew(sweep_, lidar_, trajectory_, out_);
+    deskew(sweep_, lidar_, trajectory_, own_, out_);
   }
   /// A beam at a time in each direction of a turn, three together; `range` of beams in the world.
   template <class Range>
@@ -147,7 +148,7 @@ TEST_F(DeskewTest, CountsWhatDoesNotFitAndTakesAnEmptySweep) {
   EXPECT_EQ(out_.origins.size(), 100U);
   EXPECT_EQ(out_.dropped, 2900U);
   sweep_.clear();
-  deskew(sweep_, lidar_, trajectory_, out_);
+  deskew(sweep_, lidar_, trajectory_, own_, out_);
   EXPECT_EQ(out_.points.size(), 0U);
   EXPECT_EQ(out_.dropped, 0U);
 }
@@ -155,9 +156,21 @@ TEST_F(DeskewTest, CountsWhatDoesNotFitAndTakesAnEmptySweep) {
 TEST_F(DeskewTest, ARobotThatStandsChangesNothing) {
   const SweepTrajectory still;
   sweep_.push_back({3, 2, 1}, 7, -90'000'000, 0);
-  deskew(sweep_, lidar_, still, out_);
+  deskew(sweep_, lidar_, still, own_, out_);
   ASSERT_EQ(out_.points.size(), 1U);
   EXPECT_LT((point(0) - lidar_.mount() * Eigen::Vector3d(3, 2, 1)).norm(), 1e-6);
+}
+
+TEST_F(DeskewTest, LeavesOutTheRobotsOwnBody) {
+  const Eigen::Vector3d deck = lidar_.mount() * Eigen::Vector3d(-1, 0, -0.3);
+  const Eigen::Vector3d room(0.1, 0.1, 0.1);
+  own_ = OwnReturns(std::vector<BodyBox>{{deck - room, deck + room}}, lidar_.mount());
+  sweep_.push_back({-1, 0, -0.3F}, 7, 0, 0);
+  sweep_.push_back({-2, 0, -0.6F}, 7, 0, 0);
+  const SweepTrajectory still;
+  deskew(sweep_, lidar_, still, own_, out_);
+  ASSERT_EQ(out_.points.size(), 1U);
+  EXPECT_LT((point(0) - lidar_.mount() * Eigen::Vector3d(-2, 0, -0.6)).norm(), 1e-6);
 }
 
 }  // namespace

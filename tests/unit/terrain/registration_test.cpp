@@ -155,6 +155,7 @@ TEST_F(RegistrationTest, KeyPointsAreChosenByTheirNormals) {
       sweep_.scatter.push_back(0);
       sweep_.is_isolated.push_back(0);
       sweep_.is_moving.push_back(0);
+      sweep_.is_suspect.push_back(0);
     }
   }
   registration_.align(sweep_, map_, filter_);
@@ -203,6 +204,7 @@ TEST_F(RegistrationTest, ADitchLeavesTheDirectionAlongIt) {
       sweep_.scatter.push_back(0);
       sweep_.is_isolated.push_back(0);
       sweep_.is_moving.push_back(0);
+      sweep_.is_suspect.push_back(0);
     }
   }
   registration_.align(sweep_, map_, filter_);

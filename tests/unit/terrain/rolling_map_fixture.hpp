@@ -34,6 +34,7 @@ protected:
     sweep_.scatter.push_back(kScatter);
     sweep_.is_isolated.push_back(is_isolated ? 1 : 0);
     sweep_.is_moving.push_back(0);
+    sweep_.is_suspect.push_back(0);
   }
   /// A beam from the lidar into the sky, or what else gives no return.
   void see_nothing(const Eigen::Vector3d& along) {

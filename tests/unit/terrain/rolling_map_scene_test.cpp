@@ -35,6 +35,7 @@ public:
           sweep_.scatter.push_back(0);
           sweep_.is_isolated.push_back(0);
           sweep_.is_moving.push_back(0);
+          sweep_.is_suspect.push_back(0);
         }
       }
       map_.add(sweep_, Pose(), now_ns_ += 100'000'000);

@@ -81,6 +81,7 @@ inline void look(const RoughGround& ground, const Pose& pose, double reach, doub
       sweep.scatter.push_back(0);
       sweep.is_isolated.push_back(0);
       sweep.is_moving.push_back(0);
+      sweep.is_suspect.push_back(0);
     }
   }
 }

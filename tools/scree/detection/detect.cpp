@@ -89,7 +89,9 @@ void detect_in_cloud(const DetectOptions& options) {
   if (!cloud) throw Failure(cloud.error().message);
   // At the desk there is time: nothing of the file is left out.
   MemorySettings& memory = settings.memory;
+  constexpr int kPointsAnObstacle = 64;  // on average: fewer than any field of stones has
   memory.cloud_points = std::max(memory.cloud_points, static_cast<int>(cloud->size()));
+  memory.obstacles = std::max(memory.obstacles, memory.cloud_points / kPointsAnObstacle);
   auto detector = make_detector(settings.detect_cloud, memory.for_cloud(),
                                 settings_file(options.input, options.config).value_or(fs::path()));
   if (!detector) throw Failure(detector.error().message);
