@@ -77,6 +77,18 @@ TEST(Settings, MistakesNameFileLineKeyAndWhatIsAccepted) {
               AllOf(HasSubstr("robot.toml:3"), HasSubstr("port")));
 }
 
+TEST(Settings, AllMistakesAreNamedAtOnceInTheOrderOfTheirLines) {
+  EXPECT_EQ(error_of("[track]\nappear = 0.2\ndisappear = 0.3\n[lidar]\nprot = 1\nport = 0\n"
+                     "[imu]\nrate = \"fast\"\n[radar]\n"),
+            "robot.toml:3: track.disappear must not be above track.appear\n"
+            "robot.toml:5: lidar.prot is not a setting; the nearest is lidar.port\n"
+            "robot.toml:6: lidar.port = 0 is out of range, accepted is 1 to 65535\n"
+            "robot.toml:8: imu.rate must be a whole number, accepted is 100 to 400 Hz\n"
+            "robot.toml:9: radar is not a setting; the nearest is lidar");
+  EXPECT_EQ(error_of("[lidar]\nprot = 1\nx\n").find('\n'), std::string::npos)
+      << "what is no TOML has no keys";
+}
+
 TEST(Settings, KeysAreComparedByTheirPath) {
   EXPECT_THAT(error_of("\"lidar.port\" = 3368\n"),
               AllOf(HasSubstr("robot.toml:1: \"lidar.port\" is not a setting"),
