@@ -156,9 +156,20 @@ TEST(FindFile, LooksBesideTheConfigurationThenBesideTheProgram) {
 
 constexpr std::array kShippedFiles = {kOwnersFile, kProfiles[0], kProfiles[1], kProfiles[2]};
 
+/// A shipped file whose keys stand no longer as remarks, but for real.
+std::string all_set(std::string_view file) {
+  std::istringstream lines{default_toml(file)};
+  std::string text;
+  for (std::string line; std::getline(lines, line);) {
+    const bool is_key = line.starts_with("#") && !line.starts_with("# ");
+    text += line.substr(is_key ? 1 : 0) + "\n";
+  }
+  return text;
+}
+
 TEST(Settings, DefaultFilesReadBackToTheDefaults) {
   for (const std::string_view file : kShippedFiles) {
-    const auto settings = parse_settings(default_toml(file), std::string(file));
+    const auto settings = parse_settings(all_set(file), std::string(file));
     ASSERT_TRUE(settings) << settings.error().message;
     EXPECT_EQ(toml_values(*settings), toml_values(Settings()));
   }
@@ -167,7 +178,7 @@ TEST(Settings, DefaultFilesReadBackToTheDefaults) {
 TEST(Settings, EachKeyStandsInOneShippedFile) {
   std::multiset<std::string> written, keys;
   for (const std::string_view file : kShippedFiles) {
-    std::istringstream lines{default_toml(file)};
+    std::istringstream lines{all_set(file)};
     std::string table;
     for (std::string line; std::getline(lines, line);) {
       if (line.starts_with("[")) table = line.substr(1, line.size() - 2);
