@@ -300,7 +300,7 @@ class DetectTest(ProgramTest):
             log.writelines(frames)
         with open(os.path.join(capture, "scree.toml"), "a") as config:
             config.write("\n[memory]\nmap_voxels = 1024\n")
-        said = self.scree("detect", capture, "--out", self.path("l")).stderr
+        said = self.scree("detect", capture, "--out", self.path("l"), "--force").stderr
         self.assertRegex(said, r"map: \d+ points found no room: raise memory.map_voxels")
         self.assertRegex(said, r"map: \d+ sweeps during which the wheel slipped")
 
@@ -332,7 +332,7 @@ class DetectTest(ProgramTest):
         self.detect(cloud)
         self.assertIn("one point cloud, 1000 points", self.draw(cloud, lists)[0])
         none = self.write("none.jsonl", "")
-        said = self.scree("picture", cloud, none, "--out", self.path("p.png"), code=1).stderr
+        said = self.scree("picture", cloud, none, "--out", self.path("q.png"), code=1).stderr
         self.assertIn("holds no obstacle list", said)
 
 

@@ -142,7 +142,7 @@ void print_rest(const Json& info) {
                        imu["with_orientation"].dump(), imu["lost"].dump(), listed(imu["refused"]));
   });
   row("encoder", "encoder", [](const Json& encoder) {
-    if (const std::string why = encoder["why_nothing"]; !why.empty()) return why;
+    if (std::string why = encoder["why_nothing"]; !why.empty()) return why;
     return fmt::format("{} samples, {} a second; rolled {} m; refused {}",
                        encoder["samples"].dump(), encoder["samples_per_second"].dump(),
                        encoder["distance_m"].dump(), listed(encoder["refused"]));
