@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <filesystem>
 #include <functional>
+#include <sstream>
+#include <string>
 
 #include "log_format.hpp"
 #include "pipeline_processor.hpp"
@@ -23,7 +25,10 @@ enum ExitCode : int { kStopped = 0, kFailed = 1, kUsage = 2 };
 
 int failed(const std::string& reason) {
   const char* prefix = scree::service_manager::logs_to_journal() ? "<3>" : "screed: ";
-  std::fprintf(stderr, "%s%s\n", prefix, reason.c_str());
+  std::istringstream lines(reason);
+  for (std::string line; std::getline(lines, line);) {
+    std::fprintf(stderr, "%s%s\n", prefix, line.c_str());
+  }
   return kFailed;
 }
 

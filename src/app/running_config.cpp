@@ -3,9 +3,8 @@
 #include <spdlog/fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
-#include <algorithm>
-#include <optional>
 #include <utility>
+#include <vector>
 
 #include "scree/config/configuration.hpp"
 #include "scree/config/reload.hpp"
@@ -18,30 +17,37 @@
 namespace scree {
 namespace {
 
-/// What those who will use a value say of it, which the table of keys cannot judge.
-std::optional<Error> unusable(const Configuration& configuration) {
+std::vector<KeyMistake> unusable(const Configuration& configuration) {
   const Settings& settings = configuration.settings;
-  const auto judged = [](const auto& result) {
-    return result ? std::nullopt : std::optional(result.error().message);
+  std::vector<KeyMistake> found;
+  const auto judge = [&](const char* key, const auto& result) {
+    if (!result) found.push_back({key, result.error().message});
   };
-  const std::pair<std::string_view, std::optional<std::string>> reasons[] = {
-      {"lidar.address", judged(local_address(settings.lidar.address))},
-      {"lidar.sender", judged(sender_address(settings.lidar.sender))},
-      {"imu.baud", xsens::line_too_slow(settings.imu)},
-      {"gpio.pps", judged(gpio::check_name(settings.gpio.pps))},
-      {"gpio.stop", judged(gpio::check_name(settings.gpio.stop))},
-      {"gpio.heartbeat", judged(gpio::check_name(settings.gpio.heartbeat))},
-      {"lcm.url", judged(check_lcm_url(settings.lcm.url))}};
-  for (const auto& [key, reason] : reasons) {
-    if (reason) {
-      std::string sentence =
-          fmt::format("{}: {}: {}", configuration.source_of(key).text(), key, *reason);
-      std::ranges::replace_if(
-          sentence, [](unsigned char c) { return c < ' '; }, '?');
-      return Error{std::move(sentence)};
-    }
-  }
-  return std::nullopt;
+  judge("lidar.address", local_address(settings.lidar.address));
+  judge("lidar.sender", sender_address(settings.lidar.sender));
+  if (const auto reason = xsens::line_too_slow(settings.imu))
+    found.push_back({"imu.baud", *reason});
+  judge("gpio.pps", gpio::check_name(settings.gpio.pps));
+  judge("gpio.stop", gpio::check_name(settings.gpio.stop));
+  judge("gpio.heartbeat", gpio::check_name(settings.gpio.heartbeat));
+  judge("lcm.url", check_lcm_url(settings.lcm.url));
+  return found;
+}
+
+/// What the DBC file has wrong; that it is not there is said anyway.
+std::vector<KeyMistake> unusable_signal(const EncoderSettings& settings,
+                                        const std::filesystem::path& file) {
+  const bool has_both = !settings.dbc.empty() && !settings.signal.empty();
+  if (!has_both || !find_file(settings.dbc, file)) return {};
+  const auto encoder = encoder::with_dbc(settings, file);
+  if (encoder) return {};
+  return {{"encoder.signal", encoder.error().message}};
+}
+
+std::string in_one_line(const std::string& lines) {
+  std::string line;
+  for (const char c : lines) line += c == '\n' ? "; " : std::string(1, c);
+  return line;
 }
 
 }  // namespace
@@ -51,15 +57,18 @@ RunningConfig::RunningConfig(std::filesystem::path file, const Settings& written
     : file_(std::move(file)), written_(written), settings_(settings) {}
 
 Result<RunningConfig> RunningConfig::read(const std::filesystem::path& file) {
-  const auto configuration = read_configuration(file);
+  const auto judge = [&file](const Configuration& configuration) {
+    std::vector<KeyMistake> found = unusable(configuration);
+    for (auto& mistake : unusable_signal(configuration.settings.encoder, file)) {
+      found.push_back(std::move(mistake));
+    }
+    return found;
+  };
+  const auto configuration = read_configuration(file, judge);
   if (!configuration) return tl::make_unexpected(configuration.error());
-  if (const auto reason = unusable(*configuration)) return tl::make_unexpected(*reason);
   const Settings& written = configuration->settings;
   auto encoder = encoder::with_dbc(written.encoder, file);
-  if (!encoder) {
-    return fail(fmt::format("{}: {}", configuration->source_of("encoder.signal").text(),
-                            encoder.error().message));
-  }
+  if (!encoder) return tl::make_unexpected(encoder.error());
   Settings settings = written;
   settings.encoder = *std::move(encoder);
   return RunningConfig(file, written, settings);
@@ -68,7 +77,8 @@ Result<RunningConfig> RunningConfig::read(const std::filesystem::path& file) {
 bool RunningConfig::reread() {
   const auto read_again = read(file_);
   if (!read_again) {
-    spdlog::error("not reloaded, the old settings stay: {}", read_again.error().message);
+    spdlog::error("not reloaded, the old settings stay: {}",
+                  in_one_line(read_again.error().message));
     return false;
   }
   const Reload change = reload(written_, read_again->written_);

@@ -178,6 +178,7 @@ bool CanLogReader::next(CanFrame& frame, std::string* interface) {
   while (stream_) {
     stream_.getline(line_.data(), static_cast<std::streamsize>(line_.size()));
     auto length = static_cast<std::size_t>(stream_.gcount());
+    position_ += length;
     if (stream_.eof() && length == 0) return false;
     if (stream_.fail() && !stream_.eof()) {
       if (stream_.bad()) return false;

@@ -65,6 +65,7 @@ bool LcmLogReader::next(LcmEvent& event) {
       stream_.read(event.channel.data(), static_cast<std::streamsize>(channel));
       stream_.read(reinterpret_cast<char*>(message_.data()), static_cast<std::streamsize>(data));
       event.message = message_;
+      position_ = static_cast<std::uint64_t>(begin) + kHeaderSize + channel + data;
       return static_cast<bool>(stream_);
     }
     skip_to_magic(begin + 1);

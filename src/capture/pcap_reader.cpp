@@ -3,7 +3,9 @@
 #include <pcap/pcap.h>
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <array>
+#include <cstdio>
 #include <utility>
 
 #include "fragments.hpp"
@@ -53,6 +55,11 @@ Result<PcapReader> PcapReader::open(const std::filesystem::path& file) {
                             reason.data()));
   }
   return PcapReader(file.string(), std::move(handle), nullptr);
+}
+
+std::uint64_t PcapReader::position() const {
+  return pcapng_ ? pcapng_->position()
+                 : static_cast<std::uint64_t>(std::max(ftell(pcap_file(handle_.get())), 0L));
 }
 
 bool PcapReader::next_of_pcapng(PcapRecord& record) {

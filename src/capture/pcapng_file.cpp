@@ -54,7 +54,9 @@ bool PcapngFile::read_block() {
     const std::size_t begin = body_.size();
     body_.resize(begin + size);
     stream_.read(reinterpret_cast<char*>(body_.data() + begin), static_cast<std::streamsize>(size));
-    return static_cast<std::size_t>(stream_.gcount());
+    const auto got = static_cast<std::size_t>(stream_.gcount());
+    position_ += got;
+    return got;
   };
   body_.clear();
   const std::size_t got = read(kBlockHeader + 4);

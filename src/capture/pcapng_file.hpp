@@ -22,6 +22,8 @@ public:
 
   /// False at the end, and where the file breaks off.
   bool next(PcapRecord& record);
+  /// How many bytes were read.
+  std::uint64_t position() const { return position_; }
   /// Why it breaks off; empty where it has not.
   const std::string& fault() const { return fault_; }
 
@@ -52,6 +54,7 @@ private:
   std::optional<std::int64_t> time_ns(const Interface& interface, std::uint64_t units) const;
 
   std::ifstream stream_;
+  std::uint64_t position_ = 0;
   std::string fault_;
   bool is_big_endian_ = false;
   std::uint32_t type_ = 0;          // of the block that was read last

@@ -1,8 +1,5 @@
 #include "scree/capture/pcd.hpp"
 
-#include <pcl/PCLPointCloud2.h>
-#include <pcl/console/print.h>
-#include <pcl/io/pcd_io.h>
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
@@ -11,47 +8,14 @@
 #include <cstring>
 #include <fstream>
 #include <limits>
-#include <sstream>
 #include <vector>
 
+#include "pcd_body.hpp"
 #include "pcd_header.hpp"
 #include "scree/core/read_file.hpp"
 
 namespace scree {
 namespace {
-
-pcl::PCLPointField::PointFieldTypes pcl_type(const PcdField& field) {
-  using Field = pcl::PCLPointField;
-  if (field.type == 'F') return field.size == 4 ? Field::FLOAT32 : Field::FLOAT64;
-  const bool is_signed = field.type == 'I';
-  switch (field.size) {
-    case 1:
-      return is_signed ? Field::INT8 : Field::UINT8;
-    case 2:
-      return is_signed ? Field::INT16 : Field::UINT16;
-    case 4:
-      return is_signed ? Field::INT32 : Field::UINT32;
-    default:
-      return is_signed ? Field::INT64 : Field::UINT64;
-  }
-}
-
-pcl::PCLPointCloud2 empty_blob(const PcdHeader& header) {
-  pcl::PCLPointCloud2 blob;
-  for (const PcdField& field : header.fields) {
-    pcl::PCLPointField& pcl_field = blob.fields.emplace_back();
-    pcl_field.name = field.name;
-    pcl_field.offset = static_cast<pcl::uindex_t>(field.offset);
-    pcl_field.datatype = static_cast<std::uint8_t>(pcl_type(field));
-    pcl_field.count = static_cast<pcl::uindex_t>(field.count);
-  }
-  blob.height = 1;
-  blob.width = static_cast<pcl::uindex_t>(header.points);
-  blob.point_step = static_cast<pcl::uindex_t>(header.point_size);
-  blob.row_step = static_cast<pcl::uindex_t>(header.points * header.point_size);
-  blob.data.resize(header.points * header.point_size);
-  return blob;
-}
 
 template <class T>
 double value_of(const std::uint8_t* bytes) {
@@ -80,11 +44,12 @@ Reading reading_of(const PcdField& field) {
 /// The values of one field, point by point.
 class FieldColumn {
 public:
-  FieldColumn(const pcl::PCLPointCloud2& blob, const PcdField& field)
+  FieldColumn(const std::vector<std::uint8_t>& points, const PcdHeader& header,
+              const PcdField& field)
       : reading_(reading_of(field)),
-        bytes_(blob.data.data() + field.offset),
-        point_size_(blob.point_step),
-        size_(blob.width) {}
+        bytes_(points.data() + field.offset),
+        point_size_(header.point_size),
+        size_(header.points) {}
 
   double operator[](std::size_t i) const { return reading_(bytes_ + i * point_size_); }
 
@@ -121,55 +86,18 @@ Eigen::Vector3d origin_for(const std::array<FieldColumn, 3>& coordinates) {
   return middle.array().round();
 }
 
-std::size_t lines_in(std::string_view text) {
-  std::size_t lines = 0;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string_view line = text.substr(begin, end - begin);
-    if (line.find_first_not_of(" \t\r") != std::string_view::npos) ++lines;
-    begin = end + 1;
-  }
-  return lines;
-}
-
-/// The points' bytes, unpacked.
-Result<pcl::PCLPointCloud2> read_body(const std::string& bytes, const PcdHeader& header) {
-  // PCL explains itself on the terminal; our caller gets a sentence instead.
-  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
-  pcl::PCLPointCloud2 blob = empty_blob(header);
-  pcl::PCDReader reader;
-  constexpr int kVersion = 7;  // 0.7
-  int failed = 0;
-  if (header.data == PcdData::ascii) {
-    const std::string_view text = std::string_view(bytes).substr(header.body);
-    if (const std::size_t lines = lines_in(text); lines < header.points) {
-      return fail(fmt::format("is cut: {} of {} points are there", lines, header.points));
-    }
-    std::istringstream body{std::string(text)};
-    failed = reader.readBodyASCII(body, blob, kVersion);
-  } else {
-    const auto* body = reinterpret_cast<const unsigned char*>(bytes.data() + header.body);
-    failed =
-        reader.readBodyBinary(body, blob, kVersion, header.data == PcdData::binary_compressed, 0);
-  }
-  if (failed != 0 || blob.data.size() != header.points * header.point_size) {
-    return fail("has points that cannot be read");
-  }
-  return blob;
-}
-
 Result<PcdCloud> read_points(const std::string& bytes) {
   const auto header = parse_pcd_header(bytes);
   if (!header) return tl::make_unexpected(header.error());
   PcdCloud cloud{PointCloud(header->points), header->viewpoint.cast<float>()};
   cloud.resize(header->points);
   if (header->points == 0) return cloud;
-  const auto blob = read_body(bytes, *header);
-  if (!blob) return tl::make_unexpected(blob.error());
+  const auto points = read_pcd_body(bytes, *header);
+  if (!points) return tl::make_unexpected(points.error());
 
-  const std::array<FieldColumn, 3> coordinates = {FieldColumn(*blob, *header->find({"x"})),
-                                                  FieldColumn(*blob, *header->find({"y"})),
-                                                  FieldColumn(*blob, *header->find({"z"}))};
+  const auto column = [&](const PcdField& field) { return FieldColumn(*points, *header, field); };
+  const std::array<FieldColumn, 3> coordinates = {
+      column(*header->find({"x"})), column(*header->find({"y"})), column(*header->find({"z"}))};
   cloud.origin = origin_for(coordinates);
   cloud.viewpoint = (header->viewpoint - cloud.origin).cast<float>();
   coordinates[0].copy_to(cloud.x, cloud.origin.x());
@@ -178,7 +106,7 @@ Result<PcdCloud> read_points(const std::string& bytes) {
   const PcdField* const reflectivity =
       header->find({"intensity", "intensities", "i", "reflectivity", "reflectance"});
   if (reflectivity != nullptr) {
-    FieldColumn(*blob, *reflectivity).copy_to(cloud.reflectivity);
+    column(*reflectivity).copy_to(cloud.reflectivity);
   } else {
     std::fill(cloud.reflectivity.begin(), cloud.reflectivity.end(), 0.0F);
   }
@@ -211,7 +139,6 @@ Result<PcdCloud> read_pcd(const std::filesystem::path& file) {
 }
 
 Result<void> write_pcd(const std::filesystem::path& file, const PointView& points) {
-  // PCL would write through a mapping, which ends the program where the disk is full.
   std::ofstream stream(file, std::ios::binary);
   stream << fmt::format(
       "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z intensity\n"

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,7 +13,7 @@ struct Contradiction {
   std::string reason;
 };
 
-/// The first that the settings have.
-std::optional<Contradiction> contradiction(const Settings& settings);
+/// Those that the settings have.
+std::vector<Contradiction> contradictions(const Settings& settings);
 
 }  // namespace scree

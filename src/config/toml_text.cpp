@@ -107,7 +107,9 @@ std::string default_toml(std::string_view file) {
   std::string text(head_of(file));
   if (file == kOwnersFile) {
     text = fmt::format(
-        "# What a robot's owner sets. A key left out keeps its default.\n"
+        "# What a robot's owner sets. Each key stands here with its default, as a remark: take its "
+        "# away\n"
+        "# to set it.\n"
         "# How obstacles are found is tuned in the profiles cloud.toml, map.toml and sweep.toml:\n"
         "# /usr/share/scree has them. A copy beside this file is read instead, and each of their\n"
         "# keys can stand here too. `scree config --all` shows every key and where it is set.\n"
@@ -121,8 +123,9 @@ std::string default_toml(std::string_view file) {
     if (file_of(key) != file) return;
     if (key.table != table) text += fmt::format("\n[{}]\n", key.table);
     table = key.table;
-    text += fmt::format("# {}{}\n{} = {}\n", key.meaning, accepted_values(key, value), key.name,
-                        toml_value(value));
+    // What an owner leaves as it is comes from the program: an update then brings new defaults.
+    text += fmt::format("# {}{}\n{}{} = {}\n", key.meaning, accepted_values(key, value),
+                        file == kOwnersFile ? "#" : "", key.name, toml_value(value));
   });
   return text;
 }

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "lcm_datagrams.hpp"
-#include "message_bounds.hpp"
 #include "scree/core/socket_message.hpp"
 #include "scree/publish/multicast.hpp"
 #include "scree/publish/publisher.hpp"
@@ -44,9 +43,7 @@ Result<std::unique_ptr<Subscriber>> Subscriber::open(const std::string& lcm_url,
 Subscriber::Subscriber(OnList on_list, OnHealth on_health, OnGrid on_grid)
     : datagrams_(std::make_unique<LcmDatagrams>()),
       buffer_(1 << 16),  // the longest datagram
-      on_list_(std::move(on_list)),
-      on_health_(std::move(on_health)),
-      on_grid_(std::move(on_grid)) {}
+      decoder_(std::move(on_list), std::move(on_health), std::move(on_grid)) {}
 
 Subscriber::~Subscriber() = default;
 
@@ -57,7 +54,7 @@ bool Subscriber::subscribe(const std::string& lcm_url) {
   if (!lcm_ || !can_wait_for(lcm_.get())) return false;
   const auto on_message = [](const lcm_recv_buf_t* buffer, const char* channel, void* subscriber) {
     const auto* data = static_cast<const std::uint8_t*>(buffer->data);
-    static_cast<Subscriber*>(subscriber)->take({channel, {data, buffer->data_size}});
+    static_cast<Subscriber*>(subscriber)->decoder_.take(channel, {data, buffer->data_size});
   };
   for (const char* channel : {kObstaclesChannel, kHealthChannel, kGridChannel}) {
     if (lcm_subscribe(lcm_.get(), channel, on_message, this) == nullptr) return false;
@@ -84,39 +81,13 @@ bool Subscriber::handle_datagrams(int milliseconds) {
                                  std::uint64_t{received.sender.sin_port};
     const auto message =
         datagrams_->take({buffer_.data(), static_cast<std::size_t>(received.size)}, sender);
-    if (message && take(*message)) return true;
+    if (message && decoder_.take(message->channel, message->data)) return true;
   }
   return true;
-}
-
-/// Whether it is of a channel that is listened to.
-bool Subscriber::take(const LcmMessage& message) {
-  if (message.channel == kObstaclesChannel) {
-    decode<obstacle_list_t>(message, is_obstacle_list(message.data), on_list_);
-  } else if (message.channel == kHealthChannel) {
-    decode<health_t>(message, is_health(message.data), on_health_);
-  } else if (message.channel == kGridChannel && on_grid_) {
-    decode<grid_t>(message, is_grid(message.data), on_grid_);
-  } else {
-    return false;
-  }
-  return true;
-}
-
-template <class Message, class Handler>
-void Subscriber::decode(const LcmMessage& encoded, bool is_sound, const Handler& handler) {
-  Message message{};
-  // Fails on another type of the same channel, as of another version of Scree.
-  if (!is_sound ||
-      message.decode(encoded.data.data(), 0, static_cast<int>(encoded.data.size())) < 0) {
-    ++refused_;
-    return;
-  }
-  handler(message);
 }
 
 std::uint64_t Subscriber::refused() const {
-  return refused_ + datagrams_->refused();
+  return decoder_.refused() + datagrams_->refused();
 }
 
 }  // namespace scree

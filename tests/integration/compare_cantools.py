@@ -83,7 +83,7 @@ def log_line(t_us, layout, data):
 def decoded(scree, folder):
     """(time in us, raw, value) of each line; nothing where Scree says that there is no signal."""
     out = os.path.join(folder, "out.csv")
-    run = subprocess.run([scree, "decode", folder, "--sensor", "encoder", "--out", out],
+    run = subprocess.run([scree, "decode", folder, "--sensor", "encoder", "--out", out, "--force"],
                          capture_output=True, text=True)  # fmt: skip
     assert run.returncode == 0 or "no signal" in run.stderr, run.stderr
     with open(out) as file:

@@ -84,7 +84,7 @@ class DecodeTest(ProgramTest):
         self.assertEqual(len(printed.splitlines()), len(rows) + 1)
 
     def test_decode_writes_one_pcd_a_sweep(self):
-        self.scree("decode", self.folder, "--sensor", "lidar", "--out", self.path("out.csv"),
+        self.scree("decode", self.folder, "--sensor", "lidar", "--out", self.path("out.csv"), "--force",
                    "--pcd", self.path("sweeps"))  # fmt: skip
         sweeps = sorted(os.listdir(self.path("sweeps")))
         self.assertEqual(sweeps, [f"sweep_{i:06}.pcd" for i in range(10)])

@@ -24,7 +24,7 @@ class DetectTest(ProgramTest):
 
     def detect(self, source, *arguments):
         """The lists, as objects, of `scree detect`."""
-        self.scree("detect", source, "--out", self.path("lists.jsonl"), *arguments)
+        self.scree("detect", source, "--out", self.path("lists.jsonl"), "--force", *arguments)
         with open(self.path("lists.jsonl")) as file:
             return [json.loads(line) for line in file]
 
@@ -71,7 +71,7 @@ class DetectTest(ProgramTest):
 
     def stages(self, *arguments):
         """Counts of the stages by name, and the names of their clouds."""
-        done = self.scree("detect", self.simulated_cloud(), "--out", self.path("l.jsonl"),
+        done = self.scree("detect", self.simulated_cloud(), "--out", self.path("l.jsonl"), "--force",
                           "--stages", self.path("stages"), *arguments)  # fmt: skip
         counts = {}
         for stage in done.stdout.strip().split(" -> "):
@@ -300,13 +300,13 @@ class DetectTest(ProgramTest):
             log.writelines(frames)
         with open(os.path.join(capture, "scree.toml"), "a") as config:
             config.write("\n[memory]\nmap_voxels = 1024\n")
-        said = self.scree("detect", capture, "--out", self.path("l")).stderr
+        said = self.scree("detect", capture, "--out", self.path("l"), "--force").stderr
         self.assertRegex(said, r"map: \d+ points found no room: raise memory.map_voxels")
         self.assertRegex(said, r"map: \d+ sweeps during which the wheel slipped")
 
     def draw(self, source, lists):
         """What `scree picture` says, and the points that it drew."""
-        said = self.scree("picture", source, lists, "--out", self.path("p.png")).stdout
+        said = self.scree("picture", source, lists, "--out", self.path("p.png"), "--force").stdout
         with open(self.path("p.png"), "rb") as picture:
             self.assertEqual(picture.read(8), b"\x89PNG\r\n\x1a\n")
         return said, int(re.search(r"(\d+) points", said)[1])
@@ -332,7 +332,7 @@ class DetectTest(ProgramTest):
         self.detect(cloud)
         self.assertIn("one point cloud, 1000 points", self.draw(cloud, lists)[0])
         none = self.write("none.jsonl", "")
-        said = self.scree("picture", cloud, none, "--out", self.path("p.png"), code=1).stderr
+        said = self.scree("picture", cloud, none, "--out", self.path("q.png"), code=1).stderr
         self.assertIn("holds no obstacle list", said)
 
 

@@ -8,6 +8,7 @@ import signal
 import struct
 import sys
 
+from lcm_log_file import write_log
 from pcap_file import pcap_records
 from programs import PATIENCE, ProgramTest, free_port, main
 from synthetic_capture import write_capture
@@ -22,14 +23,6 @@ FORMS = {
     "list_t": (3, lambda packets: FINGERPRINT + TIME + struct.pack(">i", len(packets))
                + b"".join(TIME + b"\x01" + struct.pack(">i", len(one)) + one for one in packets)),
 }  # fmt: skip
-
-
-def write_log(path, events):
-    """Of (microseconds, channel, message), as the LCM documentation describes its log format."""
-    with open(path, "wb") as file:
-        for number, (stamp, channel, message) in enumerate(events):
-            file.write(struct.pack(">IqqII", 0xEDA1DA01, number, stamp, len(channel), len(message)))
-            file.write(channel.encode() + message)
 
 
 class LcmLogTest(ProgramTest):
@@ -72,9 +65,9 @@ class LcmLogTest(ProgramTest):
             if form != "list_t":
                 self.assertEqual(found["position"]["packets"], wanted["position"]["packets"])
             self.assertEqual(found["frames"]["not_udp"], 1)
-            self.done("decode", log, "--sensor", "lidar", "--out", self.path("out.csv"))
+            self.done("decode", log, "--sensor", "lidar", "--out", self.path("out.csv"), "--force")
             self.assertEqual(self.rows(), returns, form)
-            lists = self.run_to_end(SCREE, "detect", log, "--out", self.path("lists.jsonl"))
+            lists = self.run_to_end(SCREE, "detect", log, "--out", self.path("lists.jsonl"), "--force")
             self.assertEqual(lists.returncode, 0, lists.stderr)
 
     def test_a_log_is_replayed_and_sliced(self):

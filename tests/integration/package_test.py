@@ -51,7 +51,7 @@ class PackageTest(ProgramTest):
         scree, config = f"{root}/usr/bin/scree", f"{root}/etc/scree/scree.toml"
         effective = self.done(scree, "config", "--config", config)
         self.assertRegex(effective, rf"\nlength = 4\.5 +# {drop_in}:2\n")
-        self.assertRegex(effective, rf"\nwidth = 1\.0 +# {config}:\d+\n")
+        self.assertRegex(effective, r"\nwidth = 1\.0 +# default\n")
         self.assertRegex(self.done(scree, "config", "--defaults"), r"\nlength = 2\.0 +# default\n")
         with open(drop_in, "w") as file:
             file.write("[stop]\nlenght = 4.5\n")
@@ -65,10 +65,30 @@ class PackageTest(ProgramTest):
         overview = self.done(f"{root}/usr/bin/scree", "--help")
         subcommands = re.findall(r"^  ([a-z]+) {2,}", overview.partition("Subcommands:")[2], re.M)
         self.assertIn("detect", subcommands)
-        for name in ["screed", "scree", "scree-spy", *(f"scree-{command}" for command in subcommands)]:
-            page = self.done("zcat", f"{root}/usr/share/man/man1/{name}.1.gz")
+        pages = ["scree.1", "scree-spy.1", "screed.8", *(f"scree-{it}.1" for it in subcommands)]
+        for name, section in (page.rsplit(".", 1) for page in pages):
+            page = self.done("zcat", f"{root}/usr/share/man/man{section}/{name}.{section}.gz")
             self.assertRegex(page, rf"\.SH NAME\n{name} \\- \w", name)
-            self.assertIn(".SH OPTIONS", page, name)
+            for heading in ["OPTIONS", "EXAMPLES", "FILES", '"EXIT STATUS"']:
+                self.assertIn(f".SH {heading}", page, name)
+
+    def test_every_key_stands_in_the_manual_page_of_the_configuration(self):
+        root = self.unpack()
+        page = self.done("zcat", f"{root}/usr/share/man/man5/scree.toml.5.gz").replace("\\-", "-")
+        keys = self.done(f"{root}/usr/bin/scree", "config", "--defaults", "--all")
+        for key in re.findall(r"^(\w+ = .+?) +#", keys, re.M):
+            self.assertIn(f".TP\n\\fB{key}\\fP\n", page)
+        self.assertEqual(self.run_to_end("man", "--warnings", "-l", "-", input=page).stderr, "")
+
+    def test_a_planner_finds_the_package_in_cmake_and_pkg_config(self):
+        root = self.unpack()
+        flags = self.done("pkg-config", "--cflags", "scree",
+                          env={"PKG_CONFIG_PATH": f"{root}/usr/share/pkgconfig", "PATH": os.environ["PATH"]})  # fmt: skip
+        self.assertIn(f"{root}/usr", os.path.normpath(flags.split()[0][2:]))
+        examples = f"{root}/usr/share/doc/scree/examples"
+        self.done("cmake", "-S", examples, "-B", self.path("built"), f"-DCMAKE_PREFIX_PATH={root}/usr")
+        self.done("cmake", "--build", self.path("built"))
+        self.assertTrue(os.access(self.path("built/planner"), os.X_OK))
 
     def test_its_messages_are_understood_in_python_and_java(self):
         root = self.unpack()
@@ -99,6 +119,37 @@ class PackageTest(ProgramTest):
         completions = f"{root}/usr/share/bash-completion/completions/{words[0]}"
         return self.done("bash", "-c", script, completions, *words).split()
 
+    def test_zsh_offers_words_and_files(self):
+        root = self.unpack()
+        script = (
+            "compadd() { shift; print -l -- $@ }; _files() { print files };"
+            'words=("${@:2}"); CURRENT=$#words; f() { source $1 }; f $1'
+        )
+
+        def offered(line):
+            source = f"{root}/usr/share/zsh/vendor-completions/_scree"
+            return self.done("zsh", "-f", "-c", script, "zsh", source, *line.split(" ")).split()
+
+        self.assertIn("decode", offered("scree "))
+        self.assertEqual(offered("scree decode --sensor "), ["encoder", "imu", "lidar"])
+        self.assertIn("mixed", offered("scree simulate --scene "))
+        self.assertIn("--out", offered("scree decode --"))
+        self.assertEqual(offered("scree decode --out "), ["files"])
+        self.assertEqual(offered("scree-spy --url "), ["files"])
+
+    def test_fish_offers_words(self):
+        root = self.unpack()
+        source = f"{root}/usr/share/fish/vendor_completions.d/scree.fish"
+
+        def offered(line):
+            return self.done("fish", "-N", "-c", f"source {source}; complete -C '{line}'",
+                             env={"HOME": self.folder, "PATH": os.environ["PATH"]}).split()  # fmt: skip
+
+        self.assertIn("decode", offered("scree de"))
+        self.assertEqual(offered("scree decode --sensor "), ["encoder", "imu", "lidar"])
+        self.assertEqual(offered("scree study seed"), ["seed-distance"])
+        self.assertIn("mixed", offered("scree simulate --scene "))
+
     def test_bash_completes_subcommands_options_and_their_words(self):
         root = self.unpack()
         overview = self.done(f"{root}/usr/bin/scree", "--help").partition("Subcommands:")[2]
@@ -108,6 +159,7 @@ class PackageTest(ProgramTest):
         self.assertEqual(self.complete(root, "scree decode --sensor "), ["encoder", "imu", "lidar"])
         self.assertEqual(self.complete(root, "scree study seed"), ["seed-distance"])
         self.assertEqual(self.complete(root, "scree train --profile m"), ["map"])
+        self.assertEqual(self.complete(root, "scree simulate --scene ro"), ["rolling", "rough"])
         self.assertEqual(self.complete(root, "scree detect "), [], "bash offers files")
         self.assertEqual(self.complete(root, "scree record --config "), [], "bash offers files")
         self.assertEqual(self.complete(root, "screed --ch"), ["--check-config"])

@@ -60,7 +60,7 @@ class ProgramTest(unittest.TestCase):
     def decoded(self, scree, capture, sensor, *arguments):
         """The rows that `scree decode` lists of a sensor, without the first column, the times."""
         out = self.path("decoded.csv")
-        self.done(scree, "decode", capture, "--sensor", sensor, "--out", out, *arguments)
+        self.done(scree, "decode", capture, "--sensor", sensor, "--out", out, "--force", *arguments)
         with open(out, newline="") as file:
             return [row[1:] for row in list(csv.reader(file))[1:]]
 

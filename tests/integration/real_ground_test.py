@@ -24,7 +24,7 @@ class RealGroundTest(ProgramTest):
         if not os.path.exists(source):
             self.skipTest(f"no such recording: {os.path.join(*names)}")
         out = self.path("lists.jsonl")
-        self.done(SCREE, "detect", source, "--out", out)
+        self.done(SCREE, "detect", source, "--out", out, "--force")
         with open(out) as file:
             return [json.loads(line)["obstacles"] for line in file]
 

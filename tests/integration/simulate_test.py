@@ -63,7 +63,7 @@ def tilt_from(quaternion):
 class SimulateTest(ProgramTest):
     def simulate(self, *arguments):
         capture = self.path("capture")
-        self.assertEqual(self.done(SCREE, "simulate", capture, *arguments).stdout, "")
+        self.assertEqual(self.done(SCREE, "simulate", capture, "--force", *arguments).stdout, "")
         with open(os.path.join(capture, "truth.json")) as file:
             truth = json.load(file)
         with open(os.path.join(capture, "scree.toml"), "rb") as file:

@@ -107,6 +107,8 @@ class StudyTest(ProgramTest):
     def test_hardly_any_points_are_no_crash(self):
         for name in ("training", "clustering", "seed-distance", "stages", "result", "detection"):
             self.scree("study", name, "--out", self.folder, "--seeds", "1", "--points", "1000")
+        again = self.run_to_end(SCREE, "study", "stages", "--out", self.folder, "--points", "1000")
+        self.assert_fails(again, "stages.", "--force")
 
     def test_failures_are_one_sentence(self):
         for arguments in (["stages", "--out", "/dev/null/x"], ["stages", "--out", "/proc"]):

@@ -12,7 +12,7 @@ SMALL = ("--training", "1", "--validation", "1", "--held-out", "1", "--hidden", 
 class TrainTest(ProgramTest):
     def train(self, *arguments):
         out = self.path("network.txt")
-        said = self.done(SCREE, "train", *arguments, "--out", out).stdout
+        said = self.done(SCREE, "train", *arguments, "--out", out, "--force").stdout
         self.assertIn(f"wrote {out}", said)
         with open(out) as file:
             return file.read()
@@ -38,6 +38,13 @@ class TrainTest(ProgramTest):
             self.assertNotEqual(result.returncode, 0)
             self.assertIn(reason, result.stderr)
             self.assertNotIn("clusters for", result.stderr + result.stdout)
+
+    def test_it_asks_for_its_file_before_it_trains(self):
+        self.assertIn("--out is required", self.done(SCREE, "train", *SMALL, code=2).stderr)
+        there = self.write("network.txt", "mine")
+        self.assert_fails(self.run_to_end(SCREE, "train", *SMALL, "--out", there), "--force")
+        nowhere = self.run_to_end(SCREE, "train", *SMALL, "--out", self.path("no/network.txt"))
+        self.assert_fails(nowhere, "there is no folder")
 
 
 if __name__ == "__main__":

@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
-"""Writes bash's completion of scree, screed and scree-spy from what they say to --help.
+"""Writes a shell's completion of scree, screed and scree-spy from what they say to --help.
 
-completion.py SCREE SCREED SCREE_SPY > FILE
+completion.py bash|zsh|fish SCREE SCREED SCREE_SPY > FILE
 """
 
 import os
 import re
 import subprocess
 import sys
+
+MADE = "# Made from what the programs say to --help. Where no word fits, files are offered."
 
 
 def help_of(*command):
@@ -26,60 +28,95 @@ def entries(text, heading):
 def choices(kind):
     """The words that a value may be, where the help lists them."""
     listed = re.search(r"\{(.+?)\}", kind)
-    return [word.split("->")[0].strip() for word in listed[1].split(",")] if listed else []
+    return [word.strip() for word in listed[1].split(",")] if listed else []
 
 
-def described(text):
-    """Options, the words that follow some of them, those that a value follows, and the words of the
-    positionals."""
-    options, words, valued = [], {}, []
-    for names, kind in entries(text, "Options"):
-        name = names.split(",")[-1]
-        options.append(name)
-        if choices(kind):
-            words[name] = choices(kind)
-        elif kind and not kind.split()[0].endswith(":"):
-            valued.append(name)
-    positional = [word for _, kind in entries(text, "Positionals") for word in choices(kind)]
-    return options, words, valued, positional
+class Command:
+    """A program, or scree with a subcommand, and what may follow it."""
+
+    def __init__(self, name, text):
+        self.name, self.options, self.words, self.valued = name, [], {}, []
+        for names, kind in entries(text, "Options"):
+            option = names.split(",")[-1]
+            self.options.append(option)
+            if choices(kind):
+                self.words[option] = choices(kind)
+            elif kind and not kind.split()[0].endswith(":"):
+                self.valued.append(option)
+        self.positional = [word for _, kind in entries(text, "Positionals") for word in choices(kind)]
 
 
-def branch(pattern, options, words):
-    return f'    {pattern}) options="{" ".join(options)}" words="{" ".join(words)}" ;;'
+def branches(commands, row, files):
+    """The branches of a shell's case: after an option that takes a value, and else."""
+    for command in commands:
+        for option, words in command.words.items():
+            yield f'    "{command.name} "{option}) {row([], words)} ;;'
+        for option in command.valued:
+            yield f'    "{command.name} "{option}) {files} ;;'
+        yield f'    "{command.name} "*) {row(command.options, command.positional)} ;;'
 
 
-def cases(command, text):
-    """The branches for one command: after an option that takes a value, and else."""
-    options, words, valued, positional = described(text)
-    for option, values in words.items():
-        yield branch(f'"{command} "{option}', [], values)
-    for option in valued:
-        yield f'    "{command} "{option}) return ;;'
-    yield branch(f'"{command} "*', options, positional)
+def bash(commands, programs):
+    def row(options, words):
+        return f'options="{" ".join(options)}" words="{" ".join(words)}"'
+
+    return f"""{MADE}
+_scree() {{
+  local current=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD-1]}} options words
+  local command=${{COMP_WORDS[0]##*/}}
+  COMPREPLY=()
+  [[ $command == scree ]] && ((COMP_CWORD > 1)) && command+=" ${{COMP_WORDS[1]}}"
+  case "$command $before" in
+{chr(10).join(branches(commands, row, "return"))}
+  esac
+  [[ $current == -* ]] && words=$options
+  mapfile -t COMPREPLY < <(compgen -W "$words" -- "$current")
+}}
+complete -o default -F _scree {" ".join(programs)}"""
+
+
+def zsh(commands, programs):
+    def row(options, words):
+        return f"options=({' '.join(options)}) choices=({' '.join(words)})"
+
+    return f"""#compdef {" ".join(programs)}
+{MADE}
+local command=${{words[1]:t}} before=$words[CURRENT-1]
+local -a options choices
+[[ $command == scree ]] && ((CURRENT > 2)) && command+=" $words[2]"
+case "$command $before" in
+{chr(10).join(branches(commands, row, "_files; return"))}
+esac
+[[ $words[CURRENT] == -* ]] && choices=($options)
+if (($#choices)); then compadd -- $choices; else _files; fi"""
+
+
+def fish(commands, programs):
+    lines = [MADE]
+    subcommands = " ".join(next(c for c in commands if c.name == "scree").positional)
+    for command in commands:
+        program, _, subcommand = command.name.partition(" ")
+        seen = f"__fish_seen_subcommand_from {subcommand or subcommands}"
+        when = f' -n "{"" if subcommand else "not "}{seen}"' if program == "scree" else ""
+        line = f"complete -c {program}{when}"
+        if command.positional:
+            lines.append(f"{line} -f -a '{' '.join(command.positional)}'")
+        for option in command.options:
+            words = command.words.get(option)
+            value = f" -x -a '{' '.join(words)}'" if words else " -r" if option in command.valued else ""
+            lines.append(f"{line} -l {option.lstrip('-')}{value}")
+    return "\n".join(lines)
 
 
 def main():
-    scree, *others = sys.argv[1:]
+    shell, scree, *others = sys.argv[1:]
     overview = help_of(scree)
-    subcommands = [name for name, _ in entries(overview, "Subcommands")]
-    branches = [case for name in subcommands for case in cases(f"scree {name}", help_of(scree, name))]
-    for other in others:
-        branches += cases(os.path.basename(other), help_of(other))
-    first = branch('"scree "*', described(overview)[0], subcommands)
-    print("# Made from what the programs say to --help. Where no word fits, bash offers files.")
-    print("_scree() {")
-    print('  local current=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]} options words')
-    print("  local command=${COMP_WORDS[0]##*/}")
-    print("  COMPREPLY=()")
-    print('  [[ $command == scree ]] && ((COMP_CWORD > 1)) && command+=" ${COMP_WORDS[1]}"')
-    print('  case "$command $before" in')
-    print("\n".join(branches))
-    print(first)
-    print("  esac")
-    print("  [[ $current == -* ]] && words=$options")
-    print('  mapfile -t COMPREPLY < <(compgen -W "$words" -- "$current")')
-    print("}")
-    print("complete -o default -F _scree", "scree", *map(os.path.basename, others))
+    first = Command("scree", overview)
+    first.positional = [name for name, _ in entries(overview, "Subcommands")]
+    commands = [Command(f"scree {name}", help_of(scree, name)) for name in first.positional]
+    commands += [Command(os.path.basename(other), help_of(other)) for other in others]
+    programs = ["scree", *map(os.path.basename, others)]
+    print({"bash": bash, "zsh": zsh, "fish": fish}[shell]([*commands, first], programs))
 
 
 main()

@@ -40,6 +40,7 @@ void add_replay(CLI::App& app);
 void add_slice(CLI::App& app);
 void add_record(CLI::App& app);
 void add_watch(CLI::App& app);
+void add_status(CLI::App& app);
 void add_doctor(CLI::App& app);
 void add_top(CLI::App& app);
 void add_config(CLI::App& app);

@@ -1,7 +1,10 @@
 #include <cstdio>
 #include <exception>
+#include <sstream>
+#include <string>
 
 #include "commands.hpp"
+#include "common/usage_error.hpp"
 
 namespace {
 
@@ -20,9 +23,19 @@ void add_all(CLI::App& app) {
   scree::cli::add_slice(app);
   scree::cli::add_record(app);
   scree::cli::add_watch(app);
+  scree::cli::add_status(app);
   scree::cli::add_doctor(app);
   scree::cli::add_top(app);
   scree::cli::add_config(app);
+}
+
+/// A configuration may have many mistakes: a line each.
+int failed(const std::string& reason) {
+  std::istringstream lines(reason);
+  for (std::string line; std::getline(lines, line);) {
+    std::fprintf(stderr, "scree: %s\n", line.c_str());
+  }
+  return kFailed;
 }
 
 }  // namespace
@@ -36,10 +49,13 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    if (const auto unknown = scree::cli::unknown_word(app, error, argc, argv); !unknown.empty()) {
+      std::fprintf(stderr, "scree: %s\n", unknown.c_str());
+      return kUsage;
+    }
     if (app.exit(error) != 0) return kUsage;
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "scree: %s\n", error.what());
-    return kFailed;
+    return failed(error.what());
   }
   // A full disk or a closed pipe shows itself only when the last bytes are written out.
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {

@@ -1,9 +1,13 @@
 #include <spdlog/fmt/fmt.h>
 
+#include <filesystem>
 #include <memory>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "commands.hpp"
+#include "common/outputs.hpp"
 #include "common/progress.hpp"
 #include "simulator/capture.hpp"
 #include "simulator/scene.hpp"
@@ -16,6 +20,7 @@ struct SimulateOptions {
   CaptureSettings capture;
   CloudSettings points;
   bool has_faults = false;
+  Outputs outputs;
 };
 
 /// What was asked for, and with --faults the rest of what can go wrong.
@@ -47,20 +52,28 @@ void add_gap(CLI::App& command, const char* name, const char* help, CLI::Option*
       ->check(CLI::Range(0.0, 3600.0));
 }
 
-/// The names of all scenes as a sentence lists them.
-std::string all_scenes() {
-  std::string names;
-  for (const Scene scene : kScenes) {
-    if (!names.empty()) names += scene == kScenes.back() ? " or " : ", ";
-    names += name_of(scene);
-  }
+std::vector<std::string> all_scenes() {
+  std::vector<std::string> names;
+  for (const Scene scene : kScenes) names.emplace_back(name_of(scene));
   return names;
+}
+
+void require_free(const SimulateOptions& options) {
+  if (!options.cloud.empty()) {
+    auto truth = std::filesystem::path(options.cloud).replace_extension(".truth.json");
+    return options.outputs.require_free({options.cloud, truth});
+  }
+  const std::filesystem::path folder = options.folder;
+  if (!std::filesystem::exists(folder)) return;
+  options.outputs.require_free({folder / "lidar.pcap", folder / "imu.pcap", folder / "can.log",
+                                folder / "scree.toml", folder / "truth.json"});
 }
 
 void run(const CLI::App& command, const SimulateOptions& options) {
   if (options.folder.empty() == options.cloud.empty()) {
     throw CLI::ValidationError("give either the folder of a capture or --cloud FILE.pcd");
   }
+  require_free(options);
   Result<void> written;
   const auto scene = scene_named(options.scene);
   if (options.cloud.empty()) {
@@ -158,12 +171,8 @@ void add_simulate(CLI::App& app) {
   cloud->excludes(folder);
   command->add_option("--seed", options->capture.seed, "of terrain and noise")
       ->capture_default_str();
-  command
-      ->add_option("--scene", options->scene,
-                   all_scenes() + "; without it a cloud is like the paper's")
-      ->check([](const std::string& name) {
-        return scene_named(name) ? std::string() : "there is no scene " + name;
-      });
+  command->add_option("--scene", options->scene, "kind of ground [easy; a cloud: like the paper's]")
+      ->check(CLI::IsMember(all_scenes()));
   add_drive(*command, options->capture, cloud);
   add_movers(*command, options->capture.movers, cloud);
   add_imu(*command, options->capture, cloud);
@@ -172,6 +181,7 @@ void add_simulate(CLI::App& app) {
       ->needs(cloud)
       ->check(CLI::Range(std::size_t{1}, std::size_t{100'000'000}))
       ->capture_default_str();
+  options->outputs.add_to(*command);
   command->callback([command, options] { run(*command, *options); });
 }
 

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "common/outputs.hpp"
 #include "common/progress.hpp"
+#include "common/words.hpp"
 #include "scree/app/pipeline.hpp"
 #include "scree/config/keys.hpp"
 #include "scree/learn/metrics.hpp"
@@ -27,6 +29,7 @@ struct TrainOptions {
   std::uint64_t seed = 1;
   std::size_t training = 60, validation = 20, held_out = 20;
   TrainingSettings learn;
+  Outputs outputs;
 };
 
 const std::map<std::string, Profile> kProfiles = {{"cloud", Profile::cloud},
@@ -146,6 +149,7 @@ void set_inputs(TrainOptions& options) {
 }
 
 void run(TrainOptions options) {
+  options.outputs.require_free({options.out});
   Settings settings;
   settings.lidar = scene_lidar();
   if (!options.config.empty()) {
@@ -157,9 +161,6 @@ void run(TrainOptions options) {
   const DetectSettings& detect = options.profile == Profile::cloud   ? settings.detect_cloud
                                  : options.profile == Profile::sweep ? settings.detect_sweep
                                                                      : settings.detect_map;
-  if (options.out.empty()) {
-    options.out = "config/" + (is_track ? settings.track.network : detect.network);
-  }
   if (options.learn.averaged > options.learn.restarts) {
     throw Failure(fmt::format("--average {} takes more networks than --restarts {} trains",
                               options.learn.averaged, options.learn.restarts));
@@ -199,12 +200,13 @@ void run(TrainOptions options) {
 void add_train(CLI::App& app) {
   auto* command = app.add_subcommand("train", "trains the network on simulated terrain");
   auto options = std::make_shared<TrainOptions>();
-  command->add_option("--profile", options->profile, "cloud, map, sweep or track")
-      ->transform(CLI::CheckedTransformer(kProfiles))
+  add_words(*command, "--profile", options->profile, kProfiles, "what the network judges")
       ->default_str("cloud");
   command->add_option("--config", options->config, "the detector's settings, and the lidar's mount")
       ->check(CLI::ExistingFile);
-  command->add_option("--out", options->out, "weights file, default config/ and its shipped name");
+  command->add_option("--out", options->out, "weights file to write")
+      ->required()
+      ->type_name("FILE");
   command->add_option("--seed", options->seed, "first terrain of the training part")
       ->capture_default_str();
   const auto terrains = CLI::Range(std::size_t{1}, std::size_t{kPart});
@@ -234,11 +236,9 @@ void add_train(CLI::App& app) {
                    "the best of the restarts whose mean is the network")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  command
-      ->add_option("--counts", options->counts,
-                   "how counts of points and beams enter: raw or log1p")
-      ->transform(CLI::CheckedTransformer(kForms))
+  add_words(*command, "--counts", options->counts, kForms, "how counts of points and beams enter")
       ->default_str("log1p");
+  options->outputs.add_to(*command);
   command->callback([options] { run(*options); });
 }
 

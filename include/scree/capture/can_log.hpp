@@ -58,10 +58,13 @@ public:
   bool next(CanFrame& frame, std::string* interface = nullptr);
 
   const CanLogCounters& counters() const { return counters_; }
+  /// How many bytes of the file were read, about.
+  std::uint64_t position() const { return position_; }
 
 private:
   std::ifstream stream_;
   std::array<char, 512> line_{};  ///< twice the longest line that a frame needs
+  std::uint64_t position_ = 0;
   bool is_first_ = true;
   CanLogCounters counters_;
 };

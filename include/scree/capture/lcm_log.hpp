@@ -30,6 +30,8 @@ public:
   /// False at the end.
   bool next(LcmEvent& event);
 
+  /// How many bytes of the file were read.
+  std::uint64_t position() const { return position_; }
   /// What of the file belongs to no whole message, one sentence; empty when all of it does.
   std::string broken_off() const;
 
@@ -38,7 +40,7 @@ private:
 
   std::string name_;
   std::ifstream stream_;
-  std::uint64_t size_ = 0, skipped_ = 0;
+  std::uint64_t size_ = 0, position_ = 0, skipped_ = 0;
   std::vector<std::uint8_t> message_;
 };
 

@@ -52,6 +52,8 @@ public:
   /// Skips and counts what is no UDP datagram. False at the end.
   bool next(Datagram& datagram);
 
+  /// How many bytes of the file were read, about.
+  std::uint64_t position() const;
   /// Why the file ended before its end; empty if it did not.
   const std::string& broken_off() const { return broken_off_; }
   /// What the calls of next(Datagram&) have seen.

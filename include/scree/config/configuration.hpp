@@ -40,11 +40,20 @@ struct NamedFile {
 /// The files that keys name: weights and a DBC file; a name is empty where there is none.
 std::vector<NamedFile> named_files(const Settings& settings);
 
+/// What is wrong with the value of a key.
+struct KeyMistake {
+  std::string key, reason;
+};
+/// What those who will use the values say of them, which the table of keys cannot judge.
+using Judge = std::function<std::vector<KeyMistake>(const Configuration&)>;
+
 /// Reads the profiles, over them a TOML file, and over it the drop-ins: of scree.toml the files
 /// scree.d/*.toml beside it, in the order of their names. A profile (cloud.toml, map.toml,
-/// sweep.toml) is the file of that name beside the TOML file, else the shipped one. The error names
-/// file, line and key, what is accepted, and for an unknown key the nearest one.
-Result<Configuration> read_configuration(const std::filesystem::path& file);
+/// sweep.toml) is the file of that name beside the TOML file, else the shipped one. The error has a
+/// line for each mistake, in the order of files and lines: it names file, line and key, what is
+/// accepted, and for an unknown key the nearest one.
+Result<Configuration> read_configuration(const std::filesystem::path& file,
+                                         const Judge& judge = {});
 
 enum class Shown : std::uint8_t {
   owners,  ///< what a robot's owner sets, and all that a file sets

@@ -3,30 +3,26 @@
 #include <lcm/lcm.h>
 
 #include <cstdint>
-#include <functional>
 #include <memory>
-#include <scree/grid_t.hpp>
-#include <scree/health_t.hpp>
-#include <scree/obstacle_list_t.hpp>
 #include <string>
 #include <vector>
 
 #include "scree/core/descriptor.hpp"
 #include "scree/core/result.hpp"
+#include "scree/publish/message_decoder.hpp"
 
 namespace scree {
 
 class LcmDatagrams;
-struct LcmMessage;
 
 /// Receives what a Publisher sends. One thread may use it. Whatever bytes come are safe: multicast
 /// is read here and not by liblcm, and each message is checked before it is decoded.
 class Subscriber {
 public:
   /// Called from handle(); must not throw, because LCM, which is C, may lie between.
-  using OnList = std::function<void(const obstacle_list_t&)>;
-  using OnHealth = std::function<void(const health_t&)>;
-  using OnGrid = std::function<void(const grid_t&)>;
+  using OnList = scree::OnList;
+  using OnHealth = scree::OnHealth;
+  using OnGrid = scree::OnGrid;
 
   /// Listens from here on; the error says what to do where multicast has no route, or nobody
   /// answers at the other end of a connection.
@@ -49,18 +45,12 @@ private:
   Subscriber(OnList on_list, OnHealth on_health, OnGrid on_grid);
   bool subscribe(const std::string& lcm_url);
   bool handle_datagrams(int milliseconds);
-  bool take(const LcmMessage& message);
-  template <class Message, class Handler>
-  void decode(const LcmMessage& encoded, bool is_sound, const Handler& handler);
 
   Descriptor socket_;                    // of the multicast group, or ...
   std::unique_ptr<lcm_t, Destroy> lcm_;  // ... any other provider
   std::unique_ptr<LcmDatagrams> datagrams_;
   std::vector<std::uint8_t> buffer_;
-  OnList on_list_;
-  OnHealth on_health_;
-  OnGrid on_grid_;
-  std::uint64_t refused_ = 0;
+  MessageDecoder decoder_;
 };
 
 }  // namespace scree

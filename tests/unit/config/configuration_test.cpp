@@ -57,6 +57,21 @@ TEST_F(ConfigurationTest, MistakesInADropInNameIt) {
   EXPECT_THAT(error_of(file), HasSubstr("folder.toml")) << "the first of the files";
 }
 
+TEST_F(ConfigurationTest, MistakesStandInTheOrderOfTheFiles) {
+  const auto file = write("[imu]\n\nrate = 1\n");
+  folder_.write("scree.d/a.toml", "[lidar]\nsender = \"velodyne.local\"\n");
+  folder_.write("scree.d/b.toml", "x = 1\n");
+  const auto read = read_configuration(file, [](const Configuration&) {
+    return std::vector<KeyMistake>{{"lidar.sender", "is no address"}, {"lcm.url", "is odd"}};
+  });
+  ASSERT_FALSE(read);
+  const std::string& all = read.error().message;
+  EXPECT_THAT(all, HasSubstr("a.toml:2: lidar.sender: is no address\n"));
+  EXPECT_LT(all.find("scree.toml: lcm.url: is odd"), all.find("scree.toml:3: imu.rate"));
+  EXPECT_LT(all.find("scree.toml:3: imu.rate"), all.find("a.toml:2: lidar.sender"));
+  EXPECT_LT(all.find("a.toml:2: lidar.sender"), all.find("b.toml:1: x"));
+}
+
 TEST_F(ConfigurationTest, AFileThatAKeyNamesMustBeThere) {
   EXPECT_THAT(error_of(write("[encoder]\nsignal = \"A.B\"\nscale = 1.0\ndbc = \"none.dbc\"\n")),
               AllOf(HasSubstr("scree.toml:4: encoder.dbc"), HasSubstr("none.dbc")));

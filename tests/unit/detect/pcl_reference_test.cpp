@@ -11,6 +11,7 @@
 #include <set>
 
 #include "detect/clouds.hpp"
+#include "scree/core/pcl_cloud.hpp"
 #include "scree/detect/cell.hpp"
 #include "scree/detect/elevation_gradient.hpp"
 #include "scree/detect/euclidean_clusters.hpp"
@@ -37,9 +38,7 @@ std::optional<PointCloud> recording(const std::string& name) {
   const std::string file = std::string(SCREE_SHARED_DATA) + "/clouds/" + name;
   PclCloud read;
   if (!std::filesystem::exists(file) || pcl::io::loadPCDFile(file, read) != 0) return std::nullopt;
-  PointCloud cloud(read.size());
-  for (const auto& point : read) cloud.push_back(point.x, point.y, point.z, point.intensity);
-  return cloud;
+  return from_pcl(read);
 }
 
 std::vector<PointCloud> clouds() {

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <string>
 
 namespace scree::cli {
 
-/// A line on stderr that says how far a work is, where stderr is a terminal; nothing elsewhere.
+/// A line on stderr that says how far a work is and how long it still takes, where stderr is a
+/// terminal; nothing elsewhere, and nothing of a work of less than two seconds.
 class Progress {
 public:
   Progress(std::string work, std::size_t total);
@@ -19,10 +21,14 @@ public:
   static bool is_shown();
 
 private:
+  using Clock = std::chrono::steady_clock;
+
   std::string work_;
   std::size_t total_;
-  std::size_t percent_ = 101;
   const bool is_shown_ = is_shown();
+  const Clock::time_point begin_ = Clock::now();
+  Clock::time_point next_;
+  bool is_written_ = false;
 };
 
 }  // namespace scree::cli

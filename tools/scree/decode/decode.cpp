@@ -32,10 +32,13 @@ void add_decode(CLI::App& app) {
       "Lidar: folder for one PCD a sweep as well; of two equal dual returns it has one");
   command->add_option("--config", options->config,
                       "Configuration; the capture's own scree.toml when not given");
+  options->outputs.add_to(*command);
   command->callback([options] {
     if (!options->pcd.empty() && options->sensor != "lidar") {
       throw CLI::ValidationError("--pcd", "is for the lidar");
     }
+    options->outputs.require_free({options->out});
+    options->outputs.require_empty(options->pcd);
     sensors().at(options->sensor)(*options);
   });
 }

@@ -2,10 +2,13 @@
 
 #include <string>
 
+#include "common/outputs.hpp"
+
 namespace scree::cli {
 
 struct DecodeOptions {
   std::string capture, config, sensor, out, pcd;
+  Outputs outputs;
 };
 
 // One file a sensor. Each writes the decoded values as CSV, then says on stderr what a person

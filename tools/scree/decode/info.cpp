@@ -9,6 +9,7 @@
 
 #include "commands.hpp"
 #include "common/time_span.hpp"
+#include "decode/info_motion.hpp"
 #include "read/lidar_capture.hpp"
 #include "scree/core/ipv4.hpp"
 #include "scree/drivers/velodyne/position_packet.hpp"
@@ -198,11 +199,13 @@ void inform(const InfoOptions& options) {
   capture.play(*stream, [&](const Datagram& datagram) {
     if (datagram.destination_port == settings.lidar.position_port) position.see(datagram);
   });
-  const Json info = describe(capture, *stream, sweep_rate, position, settings.lidar.model);
+  Json info = describe(capture, *stream, sweep_rate, position, settings.lidar.model);
+  info.update(describe_rest(options.capture, options.config));
   if (options.json) {
     fmt::print("{}\n", info.dump(2, ' ', false, Json::error_handler_t::replace));
   } else {
     print_table(info);
+    print_rest(info);
   }
   if (stream->counters().accepted == 0) throw Failure(capture.why_nothing(*stream));
 }

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "commands.hpp"
+#include "common/outputs.hpp"
 #include "detection/pipeline_capture.hpp"
 #include "detection/stages.hpp"
 #include "read/lidar_capture.hpp"
@@ -21,6 +22,7 @@ namespace fs = std::filesystem;
 
 struct DetectOptions {
   fs::path input, config, out, grid, stages;
+  Outputs outputs;
   std::vector<double> viewpoint;  // x, y, z in metres; empty: the file's
 };
 
@@ -180,7 +182,10 @@ void add_detect(CLI::App& app) {
           "where a cloud was seen from, X Y Z in metres; default: the file's, where it can "
           "have been seen from there")
       ->expected(3);
+  options->outputs.add_to(*command);
   command->callback([options] {
+    options->outputs.require_free({options->out, options->grid});
+    options->outputs.require_empty(options->stages);
     if (is_pcd(options->input) || options->input.extension() == ".pcd") {
       detect_in_cloud(*options);
     } else {

@@ -7,8 +7,12 @@
 #include <string>
 
 #include "commands.hpp"
+#include "common/progress.hpp"
 #include "scoring/json_field.hpp"
+#include "scree/capture/lcm_log.hpp"
 #include "scree/detect/enclosing_polygon.hpp"
+#include "scree/publish/message_decoder.hpp"
+#include "scree/publish/messages.hpp"
 
 namespace scree::cli {
 namespace {
@@ -58,16 +62,37 @@ ObstacleList list_of(const JsonField& field) {
   return list;
 }
 
+std::vector<ObstacleList> lists_of_log(const std::filesystem::path& file) {
+  LcmLogReader log = value_or_fail(LcmLogReader::open(file));
+  std::vector<ObstacleList> lists;
+  MessageDecoder decoder(
+      [&](const obstacle_list_t& message) { from_message(message, lists.emplace_back()); },
+      [](const health_t&) {});
+  Progress progress("reading " + file.string(), std::filesystem::file_size(file));
+  for (LcmEvent event; log.next(event); progress(log.position())) {
+    decoder.take(event.channel, event.message);
+  }
+  if (lists.empty()) throw Failure(file.string() + ": the log has no list on SCREE_OBSTACLES");
+  return lists;
+}
+
 }  // namespace
 
 std::vector<ObstacleList> read_detections(const std::filesystem::path& file) {
+  if (is_lcm_log(file)) return lists_of_log(file);
   std::ifstream stream(file);
   if (!stream || std::filesystem::is_directory(file)) throw Failure("cannot read " + file.string());
   std::vector<ObstacleList> lists;
+  std::error_code unknown;
+  const std::uintmax_t size = std::filesystem::file_size(file, unknown);  // of no pipe
+  Progress progress("reading " + file.string(), unknown ? 0 : size);
+  std::size_t position = 0;
   std::string line;
   for (int number = 1; std::getline(stream, line); ++number) {
+    progress(position += line.size() + 1);
     try {
       const auto json = parse_json(line);
+      if (JsonField(json).has("health")) continue;
       lists.push_back(list_of(JsonField(json)));
       if (lists.size() > 1 && lists.back().stamp_ns < lists[lists.size() - 2].stamp_ns) {
         JsonField(json)["stamp_ns"].refuse("it is before that of the line above");

@@ -29,6 +29,9 @@ struct Rectangle {
   }
 };
 
+/// Throws Failure where there is no Cairo, before any work.
+void require_cairo();
+
 /// A page of pixels to draw on, x to the right and y down. A thin layer over Cairo.
 class Drawing {
 public:

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "commands.hpp"
+#include "common/outputs.hpp"
 #include "detection/detections.hpp"
 #include "detection/pipeline_capture.hpp"
 #include "draw/top_view.hpp"
@@ -18,6 +19,7 @@ namespace {
 
 struct PictureOptions {
   std::string input, detections, out, config;
+  Outputs outputs;
 };
 
 /// What the obstacles lie on.
@@ -94,6 +96,8 @@ const ObstacleList& list_of(const std::vector<ObstacleList>& lists, std::int64_t
 }
 
 void picture(const PictureOptions& options) {
+  options.outputs.require_free({options.out});
+  require_cairo();
   const auto lists = read_detections(options.detections);
   if (lists.empty()) throw Failure(options.detections + " holds no obstacle list");
   const bool is_cloud = is_pcd(options.input);
@@ -123,6 +127,7 @@ void add_picture(CLI::App& app) {
   command->add_option("--out", options->out, "picture to write")->required()->type_name("FILE.png");
   command->add_option("--config", options->config, "configuration [scree.toml in the capture]")
       ->type_name("FILE");
+  options->outputs.add_to(*command);
   command->callback([options] { picture(*options); });
 }
 

@@ -11,8 +11,8 @@
 namespace scree::cli {
 namespace {
 
-constexpr int kWidth = 1400, kHeight = 1120;
-constexpr Rectangle kPlot{70, 90, 1000, 980};
+constexpr int kPageWidth = 1400, kPageHeight = 1120;
+constexpr Rectangle kGroundPlot{70, 90, 1000, 980};
 constexpr double kPanel = 1105;  // left end of the legend
 constexpr Colour kRobot{0.0, 0.5, 0.25};
 constexpr int kGreys = 48;
@@ -55,21 +55,21 @@ public:
     middle_x_ = (x0 + x1) / 2;
     middle_y_ = (y0 + y1) / 2;
     const double margin = 1.06;
-    pixels_per_metre_ = std::min(kPlot.height / (margin * std::max(1.0, x1 - x0)),
-                                 kPlot.width / (margin * std::max(1.0, y1 - y0)));
+    pixels_per_metre_ = std::min(kGroundPlot.height / (margin * std::max(1.0, x1 - x0)),
+                                 kGroundPlot.width / (margin * std::max(1.0, y1 - y0)));
   }
 
   double across(double y) const {
-    return kPlot.x + kPlot.width / 2 - (y - middle_y_) * pixels_per_metre_;
+    return kGroundPlot.x + kGroundPlot.width / 2 - (y - middle_y_) * pixels_per_metre_;
   }
   double down(double x) const {
-    return kPlot.y + kPlot.height / 2 - (x - middle_x_) * pixels_per_metre_;
+    return kGroundPlot.y + kGroundPlot.height / 2 - (x - middle_x_) * pixels_per_metre_;
   }
   double pixels(double metres) const { return metres * pixels_per_metre_; }
-  double low_x() const { return middle_x_ - kPlot.height / 2 / pixels_per_metre_; }
-  double high_x() const { return middle_x_ + kPlot.height / 2 / pixels_per_metre_; }
-  double low_y() const { return middle_y_ - kPlot.width / 2 / pixels_per_metre_; }
-  double high_y() const { return middle_y_ + kPlot.width / 2 / pixels_per_metre_; }
+  double low_x() const { return middle_x_ - kGroundPlot.height / 2 / pixels_per_metre_; }
+  double high_x() const { return middle_x_ + kGroundPlot.height / 2 / pixels_per_metre_; }
+  double low_y() const { return middle_y_ - kGroundPlot.width / 2 / pixels_per_metre_; }
+  double high_y() const { return middle_y_ + kGroundPlot.width / 2 / pixels_per_metre_; }
   double grid() const { return length_of(70 / pixels_per_metre_); }
 
 private:
@@ -110,16 +110,18 @@ void draw_grid(Drawing& drawing, const View& view) {
   const auto first = [&](double low) { return static_cast<int>(std::ceil(low / step)); };
   for (int i = first(view.low_x()); i * step <= view.high_x(); ++i) {
     const double y = view.down(i * step);
-    drawing.line(kPlot.x, y, kPlot.x + kPlot.width, y, kGridOnGround, i == 0 ? 2 : 1);
+    drawing.line(kGroundPlot.x, y, kGroundPlot.x + kGroundPlot.width, y, kGridOnGround,
+                 i == 0 ? 2 : 1);
     const std::string label = fmt::format("{:.{}f}", i * step, decimals);
-    drawing.text(kPlot.x - 8 - drawing.text_width(label, 14), y + 5, label, 14, kFaint);
+    drawing.text(kGroundPlot.x - 8 - drawing.text_width(label, 14), y + 5, label, 14, kFaint);
   }
   for (int i = first(view.low_y()); i * step <= view.high_y(); ++i) {
     const double x = view.across(i * step);
-    drawing.line(x, kPlot.y, x, kPlot.y + kPlot.height, kGridOnGround, i == 0 ? 2 : 1);
+    drawing.line(x, kGroundPlot.y, x, kGroundPlot.y + kGroundPlot.height, kGridOnGround,
+                 i == 0 ? 2 : 1);
     const std::string label = fmt::format("{:.{}f}", i * step, decimals);
-    drawing.text(x - drawing.text_width(label, 14) / 2, kPlot.y + kPlot.height + 20, label, 14,
-                 kFaint);
+    drawing.text(x - drawing.text_width(label, 14) / 2, kGroundPlot.y + kGroundPlot.height + 20,
+                 label, 14, kFaint);
   }
 }
 
@@ -180,9 +182,9 @@ int draw_labels(Drawing& drawing, const View& view, const FixedVector<Obstacle>&
           middle_x - place.width / 2 + std::cos(angle) * (box.width / 2 + gap + place.width / 2);
       place.y =
           middle_y - place.height / 2 - std::sin(angle) * (box.height / 2 + gap + place.height / 2);
-      is_free = kPlot.holds(place) && std::none_of(taken.begin(), taken.end(), [&](auto& other) {
-                  return place.overlaps(other);
-                });
+      is_free = kGroundPlot.holds(place) &&
+                std::none_of(taken.begin(), taken.end(),
+                             [&](auto& other) { return place.overlaps(other); });
     }
     if (!is_free) {
       ++left_out;
@@ -207,7 +209,7 @@ void draw_legend(Drawing& drawing, const View& view, const PointView& points,
       std::count_if(obstacles.begin(), obstacles.end(),
                     [](const Obstacle& each) { return each.kind == ObstacleKind::negative; });
   const auto positives = static_cast<std::ptrdiff_t>(obstacles.size()) - negatives;
-  double y = kPlot.y + 14;
+  double y = kGroundPlot.y + 14;
   drawing.text(kPanel, y, "Obstacles", 17, kText, true);
   const auto entry = [&](Colour colour, const std::string& text) {
     y += 32;
@@ -261,23 +263,24 @@ void draw_legend(Drawing& drawing, const View& view, const PointView& points,
 
 Drawing draw_top_view(const PointView& points, const FixedVector<Obstacle>& obstacles,
                       const std::string& title, const std::string& subtitle) {
-  Drawing drawing(kWidth, kHeight, kWhite);
+  Drawing drawing(kPageWidth, kPageHeight, kWhite);
   const View view(points, obstacles);
   const auto [low, high] = bulk(points.z, 0.02);
-  drawing.text(kPlot.x, 42, title, 24, kText, true);
-  drawing.text(kPlot.x, 70, subtitle, 16, kFaint);
+  drawing.text(kGroundPlot.x, 42, title, 24, kText, true);
+  drawing.text(kGroundPlot.x, 70, subtitle, 16, kFaint);
   draw_grid(drawing, view);
-  drawing.text(18, kPlot.y - 8, "x [m]", 14, kFaint);
-  drawing.text(kPlot.x + kPlot.width - 34, kPlot.y + kPlot.height + 40, "y [m]", 14, kFaint);
+  drawing.text(18, kGroundPlot.y - 8, "x [m]", 14, kFaint);
+  drawing.text(kGroundPlot.x + kGroundPlot.width - 34, kGroundPlot.y + kGroundPlot.height + 40,
+               "y [m]", 14, kFaint);
 
-  drawing.clip(kPlot);
+  drawing.clip(kGroundPlot);
   draw_points(drawing, view, points, low, high);
   for (const Obstacle& obstacle : obstacles) draw_outline(drawing, view, obstacle);
   const double robot_x = view.across(0), robot_y = view.down(0);
   draw_robot(drawing, robot_x, robot_y);
   const int left_out = draw_labels(drawing, view, obstacles, {robot_x - 12, robot_y - 17, 24, 30});
   drawing.unclip();
-  drawing.outline(kPlot, kFaint, 1);
+  drawing.outline(kGroundPlot, kFaint, 1);
   draw_legend(drawing, view, points, obstacles, low, high, left_out);
   return drawing;
 }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "commands.hpp"
 #include "doctor/firewall.hpp"
@@ -24,6 +25,7 @@ namespace fs = std::filesystem;
 struct DoctorOptions {
   std::string config = "/etc/scree/scree.toml";
   double seconds = 3;
+  bool json = false;
 };
 
 std::string named(const Process& process) {
@@ -57,6 +59,17 @@ public:
       fmt::print("{:<6}{:<14} {}\n", kVerdicts[static_cast<std::size_t>(finding.verdict)],
                  finding.subject, finding.text);
     }
+  }
+  void print_json() const {
+    constexpr std::array kVerdicts = {"ok", "wrong", "unknown"};
+    auto findings = nlohmann::ordered_json::array();
+    for (const Finding& finding : findings_) {
+      findings.push_back({{"subject", finding.subject},
+                          {"verdict", kVerdicts[static_cast<std::size_t>(finding.verdict)]},
+                          {"text", finding.text}});
+    }
+    using nlohmann::json;
+    fmt::print("{}\n", findings.dump(2, ' ', false, json::error_handler_t::replace));
   }
   std::size_t count() const { return findings_.size(); }
 
@@ -210,7 +223,7 @@ private:
 void examine(const DoctorOptions& options) {
   Doctor doctor(options);
   const int wrong = doctor.examine();
-  doctor.print();
+  options.json ? doctor.print_json() : doctor.print();
   std::fflush(stdout);
   if (wrong > 0) throw Failure(fmt::format("{} of {} are wrong", wrong, doctor.count()));
 }
@@ -227,6 +240,7 @@ void add_doctor(CLI::App& app) {
   command->add_option("--seconds", options->seconds, "how long to listen")
       ->check(CLI::Range(0.1, 60.0))
       ->capture_default_str();
+  command->add_flag("--json", options->json, "as a JSON array, an object for each line");
   command->callback([options] { examine(*options); });
 }
 

@@ -61,6 +61,13 @@ void append_work(const health_t& health, std::string& text) {
   text += '\n';
 }
 
+/// What a robot has to do: a screed that sees may still say stop, and then stop counts.
+std::string state_and_stop(const health_t& health) {
+  if (health.state != health_t::OK) return "BLIND (" + health.reason + "), stop";
+  if (health.stop == 0) return "ok";
+  return "ok, stop (stop counts: something is in the stop zone, or was until stop.hold ago)";
+}
+
 }  // namespace
 
 void append_text(const ObstacleList& list, std::string& text) {
@@ -89,13 +96,11 @@ void append_text(const grid_t& grid, std::string& text) {
 }
 
 void append_text(const health_t& health, std::string& text) {
-  const std::string state =
-      health.state == health_t::OK ? std::string("ok") : "BLIND (" + health.reason + ")";
   fmt::format_to(
       std::back_inserter(text),
-      "{}  health {}{}: {} sweeps, {} lists, latency p50 {:.1f} p99 {:.1f} max {:.1f} ms\n",
-      time_of_day(health.stamp_ns), state, health.stop != 0 ? ", stop" : "", health.sweeps,
-      health.lists_published, health.latency.p50_ms, health.latency.p99_ms, health.latency.max_ms);
+      "{}  health {}: {} sweeps, {} lists, latency p50 {:.1f} p99 {:.1f} max {:.1f} ms\n",
+      time_of_day(health.stamp_ns), state_and_stop(health), health.sweeps, health.lists_published,
+      health.latency.p50_ms, health.latency.p99_ms, health.latency.max_ms);
   append_sensor("lidar", health.lidar, "", text);
   append_sensor("imu", health.imu, "", text);
   append_sensor("encoder", health.encoder, ", bus " + health.encoder_bus, text);

@@ -48,16 +48,23 @@ EncoderCapture::EncoderCapture(const fs::path& capture, const EncoderSettings& s
       log_(value_or_fail(CanLogReader::open(value_or_fail(can_file(capture))))),
       settings_(settings) {}
 
-void EncoderCapture::play_until(std::int64_t arrival_ns, EncoderStream& stream) {
+void EncoderCapture::play_until(std::int64_t arrival_ns, EncoderStream& stream,
+                                Progress* progress) {
   while (true) {
     if (!has_next_) has_next_ = log_.next(next_, &interface_);
     if (!has_next_ || next_.t_ns > arrival_ns) return;
     has_next_ = false;
+    if (progress != nullptr) (*progress)(log_.position());
     ++frames_[interface_];
     if (interface_ != settings_.interface) continue;
     span_.add(next_.t_ns);
     stream.take(next_);
   }
+}
+
+void EncoderCapture::play(EncoderStream& stream) {
+  Progress progress(name_, fs::file_size(*can_file(name_)));
+  play_until(INT64_MAX, stream, &progress);
 }
 
 void EncoderCapture::report(const EncoderStream& stream) const {

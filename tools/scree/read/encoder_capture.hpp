@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 
+#include "common/progress.hpp"
 #include "common/time_span.hpp"
 #include "scree/capture/can_log.hpp"
 #include "scree/config/settings.hpp"
@@ -24,8 +25,9 @@ public:
   EncoderCapture(const std::filesystem::path& capture, const EncoderSettings& settings);
 
   /// Plays the frames of the encoder's interface that had arrived by then into the stream.
-  void play_until(std::int64_t arrival_ns, encoder::EncoderStream& stream);
-  void play(encoder::EncoderStream& stream) { play_until(INT64_MAX, stream); }
+  void play_until(std::int64_t arrival_ns, encoder::EncoderStream& stream,
+                  Progress* progress = nullptr);
+  void play(encoder::EncoderStream& stream);
 
   /// Says on stderr what was refused, and why. Throws Failure when no signal was read.
   void report(const encoder::EncoderStream& stream) const;

@@ -40,11 +40,12 @@ PcapReader open_imu(const std::filesystem::path& capture) {
 ImuCapture::ImuCapture(const std::filesystem::path& capture)
     : name_(capture.string()), reader_(open_imu(capture)) {}
 
-void ImuCapture::play_until(std::int64_t arrival_ns, ImuStream& stream) {
+void ImuCapture::play_until(std::int64_t arrival_ns, ImuStream& stream, Progress* progress) {
   while (true) {
     if (!has_next_) has_next_ = reader_.next(next_);
     if (!has_next_ || next_.arrival_ns > arrival_ns) return;
     has_next_ = false;
+    if (progress != nullptr) (*progress)(reader_.position());
     if (reads_++ == 0) first_ns_ = next_.arrival_ns;
     last_ns_ = next_.arrival_ns;
     bytes_ += next_.bytes.size();
@@ -53,7 +54,8 @@ void ImuCapture::play_until(std::int64_t arrival_ns, ImuStream& stream) {
 }
 
 void ImuCapture::play(ImuStream& stream) {
-  play_until(INT64_MAX, stream);
+  Progress progress(name_, std::filesystem::file_size(*imu_file(name_)));
+  play_until(INT64_MAX, stream, &progress);
   stream.flush();
 }
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "common/progress.hpp"
 #include "common/time_span.hpp"
 #include "scree/capture/pcap_reader.hpp"
 #include "scree/drivers/xsens/imu_stream.hpp"
@@ -20,7 +21,7 @@ public:
   explicit ImuCapture(const std::filesystem::path& capture);
 
   /// Plays what had arrived by then into the stream.
-  void play_until(std::int64_t arrival_ns, xsens::ImuStream& stream);
+  void play_until(std::int64_t arrival_ns, xsens::ImuStream& stream, Progress* progress = nullptr);
   /// Plays the whole file into the stream, as the daemon would read it from the port, and flushes
   /// the stream.
   void play(xsens::ImuStream& stream);

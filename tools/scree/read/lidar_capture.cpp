@@ -35,8 +35,10 @@ LidarCapture::LidarCapture(const std::filesystem::path& capture, const Settings&
 
 void LidarCapture::play(LidarStream& stream, const OnDatagram& on_other,
                         const std::function<void(std::int64_t)>& before) {
+  Progress progress(name_, file_.size());
   Datagram datagram;
   while (file_.next(datagram)) {
+    progress(file_.position());
     if (datagrams_++ == 0) first_ns_ = datagram.arrival_ns;
     last_ns_ = datagram.arrival_ns;
     if (before) before(datagram.arrival_ns);

@@ -7,6 +7,7 @@
 #include <map>
 #include <string>
 
+#include "common/progress.hpp"
 #include "common/time_span.hpp"
 #include "read/lidar_file.hpp"
 #include "scree/config/settings.hpp"

@@ -24,7 +24,10 @@ std::variant<PcapReader, LcmLogReader> open(const std::filesystem::path& capture
 }  // namespace
 
 LidarFile::LidarFile(const std::filesystem::path& capture, const LidarSettings& settings)
-    : reader_(open(capture)), data_port_(settings.port), position_port_(settings.position_port) {
+    : reader_(open(capture)),
+      size_(std::filesystem::file_size(*lidar_file(capture))),
+      data_port_(settings.port),
+      position_port_(settings.position_port) {
   in_addr address{};
   const bool is_address = inet_pton(AF_INET, settings.sender.c_str(), &address) == 1;
   if (is_log() && !is_address) channel_ = settings.sender;
@@ -68,6 +71,10 @@ std::string LidarFile::other_channels() const {
       "packets of a lidar lie on several channels: those of {} are taken, those of {} "
       "are not; choose a channel with lidar.sender",
       channel_, other_channel_);
+}
+
+std::uint64_t LidarFile::position() const {
+  return std::visit([](const auto& reader) { return reader.position(); }, reader_);
 }
 
 const FrameCounters& LidarFile::frames() const {

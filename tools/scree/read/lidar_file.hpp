@@ -24,6 +24,10 @@ public:
   /// False at the end. Those of a log have no source, and the time of the logger.
   bool next(Datagram& datagram);
 
+  /// How many bytes of the file were read, and how many it has.
+  std::uint64_t position() const;
+  std::uint64_t size() const { return size_; }
+
   /// What was no datagram; in a log `other` counts messages without a packet.
   const FrameCounters& frames() const;
   /// Why the file ended before its end, or what of it is garbled; empty if neither.
@@ -37,6 +41,7 @@ private:
   bool is_of_my_channel();
 
   std::variant<PcapReader, LcmLogReader> reader_;
+  std::uint64_t size_;
   int data_port_, position_port_;
   LcmEvent event_;
   velodyne::Bytes rest_;  // of the event's message

@@ -46,11 +46,9 @@ std::string text_of(const fs::path& config, const Configuration& configuration) 
 
 }  // namespace
 
-void make_capture_folder(const fs::path& folder) {
+void make_capture_folder(const fs::path& folder, const Outputs& outputs) {
+  outputs.require_empty(folder);
   std::error_code error;
-  if (fs::exists(folder, error) && (!fs::is_directory(folder, error) || !fs::is_empty(folder))) {
-    throw Failure(folder.string() + " is there already, and not an empty folder");
-  }
   fs::create_directories(folder, error);
   if (error) throw Failure(fmt::format("cannot make {}: {}", folder.string(), error.message()));
 }

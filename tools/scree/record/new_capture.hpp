@@ -2,10 +2,13 @@
 
 #include <filesystem>
 
+#include "common/outputs.hpp"
+
 namespace scree::cli {
 
-/// Makes the folder of a new capture. Throws Failure where it is there and not empty.
-void make_capture_folder(const std::filesystem::path& folder);
+/// Makes the folder of a new capture. Throws Failure where it is there and not empty, unless that
+/// is to be overwritten.
+void make_capture_folder(const std::filesystem::path& folder, const Outputs& outputs);
 
 /// Copies a robot's configuration into a capture's folder, as its scree.toml (its drop-ins with
 /// it), and beside it the files that it names (the DBC file, networks), so that they are found from

@@ -27,6 +27,7 @@ constexpr int kLookMs = 50;  // how often sensors that are missing, and the time
 struct RecordOptions {
   std::string folder, config = "/etc/scree/scree.toml";
   double seconds = 0;
+  Outputs outputs;
 };
 
 /// What is told on stderr: each problem once, how far it is where stderr is a terminal, and the
@@ -87,7 +88,7 @@ void record(const RecordOptions& options) {
   value_or_fail(encoder::with_dbc(settings.encoder, config));
   HostClock clock;
   LidarRecorder lidar(settings.lidar, clock);
-  make_capture_folder(folder);
+  make_capture_folder(folder, options.outputs);
   keep_config(config, folder);
   lidar.create(folder / "lidar.pcap");
   ImuRecorder imu(settings.imu, folder / "imu.pcap", clock);
@@ -120,6 +121,7 @@ void add_record(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--seconds", options->seconds, "end after this time, else when interrupted")
       ->check(CLI::PositiveNumber);
+  options->outputs.add_to(*command);
   command->callback([options] { record(*options); });
 }
 

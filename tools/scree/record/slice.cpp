@@ -24,6 +24,7 @@ namespace fs = std::filesystem;
 struct SliceOptions {
   fs::path capture, folder, config;
   TimeRange range;
+  Outputs outputs;
 };
 
 /// A part of a capture, on the host's clock.
@@ -103,7 +104,10 @@ void cut(const SliceOptions& options) {
   options.range.check();
   const Settings settings = capture_settings(options.capture, options.config);
   const Slice slice = find_slice(options, settings);
-  make_capture_folder(options.folder);
+  make_capture_folder(options.folder, options.outputs);
+  if (fs::equivalent(options.capture, options.folder)) {
+    throw Failure("a part cannot take the place of the capture that it is cut from");
+  }
   if (const auto config = settings_file(options.capture, options.config)) {
     keep_config(*config, options.folder);
   }
@@ -138,6 +142,7 @@ void add_slice(CLI::App& app) {
       ->add_option("--config", options->config,
                    "configuration of the capture [scree.toml in the capture]")
       ->type_name("FILE");
+  options->outputs.add_to(*command);
   command->callback([options] { cut(*options); });
 }
 

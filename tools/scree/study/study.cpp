@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "commands.hpp"
+#include "common/outputs.hpp"
 #include "common/progress.hpp"
 #include "scree/app/pipeline.hpp"
 #include "simulator/scene.hpp"
@@ -45,6 +46,7 @@ struct StudyOptions {
   std::size_t seeds = 0, training = 40, points = CloudSettings().points;
   std::uint64_t seed = kFirstSeed;
   double seconds = 15;
+  Outputs outputs;
 };
 
 std::string listing() {
@@ -53,6 +55,16 @@ std::string listing() {
     text += fmt::format("\n  {:<14} {}; {} seeds", study.name, study.what, study.seeds);
   }
   return text;
+}
+
+/// The files of a study are those that begin with its name: others may be in the folder, too.
+void require_free(const StudyOptions& options) {
+  for (const auto& entry : std::filesystem::directory_iterator(options.out)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with(options.name + ".") || name.starts_with(options.name + "-")) {
+      options.outputs.require_free({entry.path()});
+    }
+  }
 }
 
 void run(const StudyOptions& options) {
@@ -68,6 +80,8 @@ void run(const StudyOptions& options) {
   std::error_code failed;
   std::filesystem::create_directories(task.out, failed);
   if (failed) throw Failure("cannot make the folder " + options.out + ": " + failed.message());
+  require_free(options);
+  require_cairo();
   task.training = options.training;
   task.points = options.points;
   task.seconds = options.seconds;
@@ -171,6 +185,7 @@ void add_study(CLI::App& app) {
   command->add_option("--seconds", options->seconds, "of each drive, where a study drives")
       ->check(CLI::Range(1.0, 3600.0))
       ->capture_default_str();
+  options->outputs.add_to(*command);
   command->callback([options] { run(*options); });
 }
 

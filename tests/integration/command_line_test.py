@@ -1,0 +1,182 @@
+"""scree's command line: python3 command_line_test.py SCREE PYTHON_TYPES [TEST ...]"""
+
+import json
+import os
+import pty
+import subprocess
+import sys
+
+from lcm_log_file import write_log
+from lcm_sender import Sender
+from programs import PATIENCE, ProgramTest, main
+
+SCREE, PYTHON_TYPES = sys.argv[1:3]
+sys.path.insert(0, PYTHON_TYPES)
+import scree  # noqa: E402
+
+
+def list_at(stamp_ns):
+    rock = scree.obstacle_t()
+    rock.id, rock.kind, rock.confidence, rock.center, rock.extent = 7, 1, 0.9, [4, 3, 0.2], [1, 1, 0.4]
+    found = scree.obstacle_list_t()
+    found.stamp_ns, found.q, found.size, found.obstacles = stamp_ns, [1, 0, 0, 0], 1, [rock]
+    return found
+
+
+def health_of(state, stop):
+    health = scree.health_t()
+    health.state, health.stop, health.reason = state, stop, "" if state else "no packets"
+    return health
+
+
+class CommandLineTest(ProgramTest):
+    def scree(self, *arguments, code=0):
+        return self.done(SCREE, *arguments, code=code)
+
+    def on_terminal(self, *arguments):
+        """What it writes when standard output and error are a terminal."""
+        ours, theirs = pty.openpty()
+        process = subprocess.Popen([SCREE, *arguments], stdout=theirs, stderr=theirs)
+        os.close(theirs)
+        text = b""
+        try:
+            while part := os.read(ours, 65536):
+                text += part
+        except OSError:  # the terminal has no writer any more
+            pass
+        self.assertEqual(process.wait(PATIENCE), 0, text)
+        return text.decode()
+
+    def simulate(self, seconds):
+        capture = self.path("capture")
+        self.scree("simulate", capture, "--seconds", str(seconds), "--scene", "easy")
+        return capture
+
+    def test_nothing_is_overwritten_without_force(self):
+        capture, lists = self.simulate(1), self.path("lists.jsonl")
+        truth = os.path.join(capture, "truth.json")
+        cloud, decoded, picture = self.path("c.pcd"), self.path("d.csv"), self.path("p.png")
+        commands = [
+            ["simulate", capture, "--seconds", "1"],
+            ["simulate", "--cloud", cloud, "--points", "1000"],
+            ["detect", capture, "--out", lists],
+            ["decode", capture, "--sensor", "imu", "--out", decoded],
+            ["picture", capture, lists, "--out", picture],
+            ["slice", capture, self.path("part")],
+        ]
+        for command in commands[1:]:
+            self.scree(*command)
+        for command in commands:
+            with open(truth, "rb") as file:
+                before = file.read()
+            refused = self.run_to_end(SCREE, *command)
+            self.assert_fails(refused, "is there already", "--force overwrites it")
+            with open(truth, "rb") as file:
+                self.assertEqual(file.read(), before)
+            self.scree(*command, "--force")
+        self.scree("decode", capture, "--sensor", "imu", "--out", "/dev/null")
+
+    def test_the_nearest_command_and_option_are_named(self):
+        self.assertIn('no command "detct"; did you mean "detect"?', self.scree("detct", code=2).stderr)
+        said = self.scree("detect", "/tmp", "--otu", "x", code=2).stderr
+        self.assertIn('detect has no option "--otu"; did you mean "--out"?', said)
+
+    def test_words_of_a_choice_stand_in_help_and_errors(self):
+        for command, option, word in [("train", "--profile", "sweep"), ("train", "--counts", "log1p"),
+                                      ("simulate", "--scene", "grass"),
+                                      ("decode", "--sensor", "encoder")]:  # fmt: skip
+            text = self.scree(command, "--help").stdout
+            self.assertRegex(text, rf"{option} TEXT:{{\S*{word}")
+            self.assertTrue(text.replace("\n", "").isprintable(), command)
+            self.assertIn(word, self.scree(command, option, "moon", code=2).stderr)
+
+    def test_progress_is_shown_on_a_terminal_alone(self):
+        capture = self.simulate(8)
+        piped = self.scree("detect", capture, "--out", self.path("a.jsonl"))
+        self.assertNotIn("left", piped.stderr)
+        shown = self.on_terminal("detect", capture, "--out", self.path("b.jsonl"))
+        self.assertRegex(shown, r"\[#+ *\] +\d+ %, \d+ s left")
+        self.assertTrue(shown.endswith("\r\x1b[K"), "and it goes at the end")
+
+    def test_info_tells_imu_encoder_and_truth(self):
+        capture = self.simulate(3)
+        info = json.loads(self.scree("info", capture, "--json").stdout)
+        self.assertAlmostEqual(info["imu"]["messages_per_second"], 100, delta=8)
+        self.assertEqual(info["imu"]["with_orientation"], info["imu"]["messages"])
+        self.assertGreater(info["encoder"]["samples"], 100)
+        with open(os.path.join(capture, "truth.json")) as file:
+            truth = json.load(file)
+        self.assertAlmostEqual(abs(info["encoder"]["distance_m"]), info["truth"]["way_m"], delta=0.3)
+        kinds = [obstacle["kind"] for obstacle in truth["obstacles"]]
+        self.assertEqual(info["truth"]["positive"], kinds.count("positive"))
+        self.assertEqual(info["truth"]["negative"], kinds.count("negative"))
+        table = self.scree("info", capture).stdout
+        for row in ("IMU ", "encoder ", "truth "):
+            self.assertIn(f"\n{row}", table)
+        lidar = os.path.join(capture, "lidar.pcap")
+        self.assertIsNone(json.loads(self.scree("info", lidar, "--json").stdout)["truth"])
+
+    def test_status_is_health_once(self):
+        self.assert_fails(self.run_to_end(SCREE, "status", "--url", self.url), "no health came")
+        for state, stop, words in [(1, False, "health ok:"), (1, True, "stop (stop counts: "),
+                                   (0, True, "BLIND (no packets), stop")]:  # fmt: skip
+            sender = Sender(self.url, {"SCREE_HEALTH": health_of(state, stop)})
+            self.addCleanup(sender.stop)
+            code = 0 if state else 1
+            self.assertIn(words, self.scree("status", "--url", self.url, code=code).stdout)
+            said = self.scree("status", "--url", self.url, "--json", code=code).stdout
+            sender.stop()
+            health = json.loads(said)
+            self.assertEqual((health["health"], health["stop"]), ("ok" if state else "blind", stop))
+            self.assertEqual(health["lidar"]["state"], "never seen")
+
+    def test_watch_changes_in_place_on_a_terminal(self):
+        messages = {"SCREE_OBSTACLES": list_at(1), "SCREE_HEALTH": health_of(1, False)}
+        sender = Sender(self.url, messages)
+        self.addCleanup(sender.stop)
+        shown = self.on_terminal("watch", "--url", self.url, "--count", "3")
+        screens = shown.split("\x1b[H")[1:]
+        self.assertGreaterEqual(len(screens), 4)
+        self.assertIn("health ok", screens[-1])
+        self.assertEqual(screens[-1].count("1 obstacle"), 1)
+        lines = self.scree("watch", "--url", self.url, "--json", "--health", "--count", "2").stdout
+        objects = [json.loads(line) for line in lines.splitlines()]
+        self.assertTrue(any("health" in each for each in objects))
+        self.assertEqual(sum("obstacles" in each for each in objects), 2)
+        alone = self.scree("watch", "--url", self.url, "--json", "--count", "2").stdout
+        self.assertNotIn('"health"', alone)
+
+    def test_logs_of_lists_are_taken_as_lists(self):
+        capture, lists = self.simulate(1), self.path("lists.jsonl")
+        self.scree("detect", capture, "--out", lists)
+        with open(lists) as file:
+            stamps = [json.loads(line)["stamp_ns"] for line in file]
+        log = self.path("drive.lcm")
+        events = [(stamp // 1000, "SCREE_OBSTACLES", list_at(stamp).encode()) for stamp in stamps]
+        write_log(log, [(1, "SCREE_HEALTH", health_of(1, False).encode()), *events])
+        watched = self.scree("watch", log, "--json").stdout.splitlines()
+        self.assertEqual([json.loads(line)["stamp_ns"] for line in watched], stamps)
+        self.assertIn("health ok", self.scree("watch", log).stdout)
+        truth = os.path.join(capture, "truth.json")
+        score = json.loads(self.scree("evaluate", truth, log, "--json").stdout)
+        with open(self.path("watched.jsonl"), "w") as file:
+            file.write(self.scree("watch", log, "--json", "--health").stdout)
+        same = self.scree("evaluate", truth, self.path("watched.jsonl"), "--json").stdout
+        self.assertEqual(json.loads(same), score)
+        said = self.scree("picture", capture, log, "--out", self.path("p.png")).stdout
+        self.assertIn(", 1 obstacles", said)
+        write_log(log, [(1, "POSE", b"x")])
+        self.assert_fails(self.run_to_end(SCREE, "watch", log), "neither lists nor health")
+        self.assert_fails(self.run_to_end(SCREE, "evaluate", truth, log), "no list on")
+
+    def test_doctor_speaks_json(self):
+        config = self.write("robot.toml", self.lidar_here())
+        said = self.run_to_end(SCREE, "doctor", "--config", config, "--seconds", "0.1", "--json")
+        findings = json.loads(said.stdout)
+        self.assertEqual(findings[0]["subject"], "configuration")
+        self.assertEqual(findings[0]["verdict"], "ok")
+        self.assertIn("wrong", {finding["verdict"] for finding in findings})
+
+
+if __name__ == "__main__":
+    main(sys.argv[3:])

@@ -1,0 +1,10 @@
+# scree::messages: the types of Scree's LCM messages, and LCM.
+include(CMakeFindDependencyMacro)
+find_dependency(PkgConfig)
+pkg_check_modules(SCREE_LCM REQUIRED IMPORTED_TARGET lcm)
+if(NOT TARGET scree::messages)
+  get_filename_component(SCREE_PREFIX "${CMAKE_CURRENT_LIST_DIR}/../../.." ABSOLUTE)
+  add_library(scree::messages INTERFACE IMPORTED)
+  set_target_properties(scree::messages PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "${SCREE_PREFIX}/include")
+  target_link_libraries(scree::messages INTERFACE PkgConfig::SCREE_LCM)
+endif()

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <initializer_list>
+
+namespace scree::cli {
+
+/// What a command writes: nothing that is there is overwritten without --force.
+class Outputs {
+public:
+  void add_to(CLI::App& command);
+  bool are_forced() const { return force_; }
+
+  /// Before the work begins: throws Failure where one of the files is there already, or its folder
+  /// is not. An empty name, a device and a pipe are always free.
+  void require_free(std::initializer_list<std::filesystem::path> files) const;
+  /// The same for a folder that gets many files: it may be there, but empty.
+  void require_empty(const std::filesystem::path& folder) const;
+
+private:
+  bool force_ = false;
+};
+
+}  // namespace scree::cli
