@@ -108,6 +108,7 @@ struct EncoderSettings {
   bool is_signed = true;
   EncoderKind kind = EncoderKind::counter;
   double scale = 0.000157;
+  Eigen::Vector3d translation{0, 0, 0};
   double max_speed = 5.0;
   double max_acceleration = 10.0;
 
