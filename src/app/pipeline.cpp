@@ -53,6 +53,7 @@ Pipeline::Pipeline(const Settings& settings, const Networks& networks)
     : lidar_(settings.lidar),
       sensors_(std::make_unique<SyncBuffer>()),
       mapper_(std::make_unique<Mapper>(settings)),
+      setup_(std::make_unique<SetupProbe>(settings)),
       map_detector_(settings.detect_map, settings.memory.for_map(), networks.map),
       sweep_detector_(settings.detect_sweep, settings.memory.for_sweep(), networks.sweep),
       tracker_(settings.track, static_cast<std::size_t>(settings.memory.obstacles), networks.judge),
@@ -90,6 +91,8 @@ const ObstacleList& Pipeline::process(const Sweep& sweep) {
   } else {
     detect_in_sweep(sweep);
   }
+  setup_->add(sweep, *sensors_);
+  timer_.done(Stage::setup);
   has_looked_ = sweep.is_whole && !ground().empty();
   return list_;
 }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "commands.hpp"
+#include "detection/setup_log.hpp"
 #include "detection/waiting_sweeps.hpp"
 #include "scree/capture/capture.hpp"
 
@@ -52,7 +53,11 @@ PipelineCapture::PipelineCapture(const std::filesystem::path& capture,
       motion_(capture, config, settings_, pipeline_.sensors(), steps_) {}
 
 void PipelineCapture::play(const std::function<void(const Sweep&)>& process) {
-  WaitingSweeps waiting(settings_.map.wait, pipeline_.sensors(), process);
+  SetupLog setup;
+  WaitingSweeps waiting(settings_.map.wait, pipeline_.sensors(), [&](const Sweep& sweep) {
+    process(sweep);
+    setup.add(pipeline_.setup());
+  });
   std::int64_t now_ns = 0;
   velodyne::LidarStream stream(settings_.lidar, [&](Sweep& sweep) {
     if (!sweep.points.empty()) waiting.push(sweep, now_ns);
@@ -77,6 +82,7 @@ void PipelineCapture::play(const std::function<void(const Sweep&)>& process) {
     fmt::print(stderr, "scree: the host's clock was set by {:+.3f} s on the way: taken out\n",
                static_cast<double>(step.by_ns) * 1e-9);
   }
+  for (const std::string& mistake : setup.sentences()) fmt::print(stderr, "scree: {}\n", mistake);
   warn_of_losses(pipeline_, waiting);
 }
 
