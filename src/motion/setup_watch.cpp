@@ -71,7 +71,12 @@ SetupWatch::Seen SetupWatch::seen_in_base(const SetupWindow& window) const {
   seen.seconds = window.seconds;
   seen.is_bound = window.is_bound;
   seen.turn = lidar_ * window.turn;
-  seen.way = lidar_ * window.way - seen.turn.cross(lidar_mount_.translation);
+  // At a height that is far from the set one the lidar swings as far as it really does.
+  Eigen::Vector3d arm = lidar_mount_.translation;
+  if (window.around && std::abs(window.around->height - arm.z()) > kHeightAround) {
+    arm.z() = window.around->height;
+  }
+  seen.way = lidar_ * window.way - seen.turn.cross(arm);
   const auto in_base = [this](std::optional<GroundPlane> ground) {
     if (ground) ground->normal = lidar_ * ground->normal;
     return ground;

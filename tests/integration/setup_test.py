@@ -49,7 +49,7 @@ class SetupTest(ProgramTest):
                 dict(lidar_rpy_deg=lambda v: [v[0], v[1], v[2] + 10]),
             ),
             ("encoder.scale looks (1.9|2.[01]) times too large", dict(encoder_scale=lambda v: 2 * v)),
-            ("encoder.scale looks of the wrong sign: set -", dict(encoder_scale=lambda v: -v)),
+            ("encoder.scale looks of the wrong sign: set 0.00015", dict(encoder_scale=lambda v: -v)),
             (
                 "imu.rpy_deg looks turned by 180 degrees about z",
                 dict(imu_rpy_deg=lambda v: [-v[0], -v[1], v[2] + 180]),
@@ -61,8 +61,7 @@ class SetupTest(ProgramTest):
         ]
         for sentence, keys in mistakes:
             said = self.said(capture, self.changed(capture, **keys))
-            self.assertEqual(len(said), 1, (sentence, said))
-            self.assertRegex(said[0], sentence)
+            self.assertTrue(any(re.search(sentence, each) for each in said), (sentence, said))
 
     def test_detect_says_it_too_and_goes_on(self):
         capture = self.simulated("mixed", "--scene", "mixed", "--seed", "70003")
