@@ -23,7 +23,7 @@ class SetupTest(ProgramTest):
             robot = file.read()
         for name, change in keys.items():
             table, key = name.split("_", 1)
-            pattern = rf"(\[{table}\][^[]*?\n{key} = )(\[[^]]*\]|\S+)"
+            pattern = rf"(\[{table}\]\n(?:[^\[\n].*\n)*?{key} = )(\[[^]]*\]|\S+)"
             match = re.search(pattern, robot)
             self.assertIsNotNone(match, name)
             value = change(json.loads(match[2]))
