@@ -40,10 +40,14 @@ public:
             settings, lines, std::move(publisher), lists_, [this] { return collect_status(); },
             watchdog_) {
     if (sensors_ != nullptr) {
-      imu_.emplace(settings.imu, *sensors_);
-      encoder_.emplace(settings.encoder, *sensors_);
-      imu_thread_ = start_thread("imu", *imu_);
-      encoder_thread_ = start_thread("encoder", *encoder_);
+      if (!settings.imu.device.empty()) {
+        imu_.emplace(settings.imu, *sensors_);
+        imu_thread_ = start_thread("imu", *imu_);
+      }
+      if (!settings.encoder.interface.empty()) {
+        encoder_.emplace(settings.encoder, *sensors_);
+        encoder_thread_ = start_thread("encoder", *encoder_);
+      }
     }
     lidar_thread_ = start_thread("lidar", lidar_);
     detector_thread_ = start_thread("detector", detector_);
@@ -59,11 +63,14 @@ public:
       thread->join();
     }
     // After the publisher, which asks both for their status.
-    if (sensors_ == nullptr) return;
-    imu_->stop();
-    encoder_->stop();
-    imu_thread_.join();
-    encoder_thread_.join();
+    if (imu_) {
+      imu_->stop();
+      imu_thread_.join();
+    }
+    if (encoder_) {
+      encoder_->stop();
+      encoder_thread_.join();
+    }
   }
 
   std::string_view stalled_thread() override { return watchdog_.stalled(); }
@@ -93,8 +100,8 @@ private:
     status.queues = {queue_message("sweeps", sweeps_.fill()),
                      queue_message("lists", lists_.fill())};
     if (sensors_ == nullptr) return status;
-    status.imu = imu_->status();
-    status.encoder = encoder_->status();
+    if (imu_) status.imu = imu_->status();
+    if (encoder_) status.encoder = encoder_->status();
     status.samples_dropped = sensors_->dropped();
     status.samples_refused = sensors_->late();
     status.queues.push_back(queue_message("imu", sensors_->imu_fill()));

@@ -22,6 +22,7 @@ void DetectionStatistics::record(std::int64_t latency_ns, std::int64_t detector_
   }
   drops_ = report.drops;
   motion_ = report.motion;
+  setup_ = report.setup;
 }
 
 void DetectionStatistics::fill(health_t& health) const {

@@ -24,12 +24,14 @@ public:
   /// What the detector has dropped up to now.
   const DropCounts& drops() const { return drops_; }
   const MotionReport& motion() const { return motion_; }
+  const SetupReport& setup() const { return setup_; }
 
 private:
   LatencyHistogram latency_, detector_;
   std::array<LatencyHistogram, kStageNames.size()> stages_;
   DropCounts drops_;
   MotionReport motion_;
+  SetupReport setup_;
 };
 
 queue_t queue_message(std::string name, const QueueFill& fill);

@@ -61,7 +61,8 @@ bool HealthWatch::update(std::int64_t now_ns, const LidarStatus& lidar, const Im
   const std::string reason_before = health.reason;
   log_first_packets(lidar);
   log_pulses(lidar);
-  const bool has_changed = update_sensors(now_ns, lidar, imu, encoder, health);
+  bool has_changed = update_sensors(now_ns, lidar, imu, encoder, health);
+  has_changed = update_setup(detector.setup, health) || has_changed;
 
   health.reason = blind_reason(now_ns, lidar, health.lidar.state, detector);
   const bool sees = health.reason.empty();
@@ -75,13 +76,38 @@ bool HealthWatch::update_sensors(std::int64_t now_ns, const LidarStatus& lidar,
                                  const ImuStatus& imu, const EncoderStatus& encoder,
                                  health_t& health) {
   bool has_changed = lidar_.update(now_ns, status_of(lidar), health.lidar, log_);
-  has_changed |= imu_.update(now_ns, status_of(imu), health.imu, log_);
-  has_changed |= encoder_.update(now_ns, status_of(encoder), health.encoder, log_);
+  // Those that are switched off are not missed.
+  if (!settings_.imu.device.empty()) {
+    has_changed |= imu_.update(now_ns, status_of(imu), health.imu, log_);
+  }
+  if (!settings_.encoder.interface.empty()) {
+    has_changed |= encoder_.update(now_ns, status_of(encoder), health.encoder, log_);
+  }
   const std::string_view bus = encoder::kBusStateNames[static_cast<std::size_t>(encoder.bus)];
   has_changed |= health.encoder_bus != bus;
   health.encoder_bus = bus;
   health.position_packets = static_cast<std::int64_t>(lidar.position_packets);
   return has_changed;
+}
+
+/// Each mistake is logged when it is found, and again with other numbers only when it comes back.
+/// @return whether there are others now
+bool HealthWatch::update_setup(const SetupReport& setup, health_t& health) {
+  std::uint32_t named = 0;
+  std::vector<std::string> sentences;
+  for (const SetupFinding& finding : setup) {
+    // Boxes of the body, of which there may be several, have the bits from their fault's on.
+    std::uint32_t bit = 1U << static_cast<unsigned>(finding.fault);
+    while ((named & bit) != 0) bit <<= 1U;
+    named |= bit;
+    sentences.push_back(sentence(finding));
+    if ((named_faults_ & bit) == 0) add_line(true, sentences.back());
+  }
+  if (named == named_faults_) return false;
+  health.setup = std::move(sentences);
+  health.setup_size = static_cast<std::int32_t>(health.setup.size());
+  named_faults_ = named;
+  return true;
 }
 
 std::string HealthWatch::foreign_sender(const LidarStatus& lidar) const {
@@ -160,7 +186,7 @@ std::string HealthWatch::blind_reason(std::int64_t now_ns, const LidarStatus& li
   if (now_ns - detector.last_loop_ns > kDetectorStops) return "the detector is late";
   if (detector.last_list_ns == 0) return "no sweep has got through the detector yet";
   if (now_ns - detector.last_list_ns > kListsStop) return "sweeps come, but no lists go out";
-  return "";
+  return detector.setup.is_grave() ? sentence(detector.setup.findings[0]) : "";
 }
 
 /// Logs one reason only once in a while: a detector may be late with every other sweep.

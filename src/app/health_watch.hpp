@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <scree/health_t.hpp>
 #include <string>
 #include <utility>
@@ -9,6 +10,7 @@
 #include "log_lines.hpp"
 #include "scree/config/settings.hpp"
 #include "scree/core/nanoseconds.hpp"
+#include "scree/motion/setup_report.hpp"
 #include "sensor_status.hpp"
 #include "sensor_watch.hpp"
 
@@ -21,6 +23,7 @@ struct DetectorStatus {
   std::int64_t last_list_ns = 0;  ///< LCM took a list, of a sweep not older than kOldSweep
   std::uint64_t not_covered = 0;  ///< sweeps that waited in vain for samples of IMU or encoder
   std::uint64_t slips = 0, heading_resets = 0;  ///< see MotionReport
+  SetupReport setup{};                            ///< see DetectionReport
 };
 
 /// Decides from what the threads report whether the robot sees, and what a person should read in
@@ -28,8 +31,10 @@ struct DetectorStatus {
 ///
 /// The robot is blind unless packets of the lidar come and are understood (SensorWatch::kSilence)
 /// and have returns (kReturnsStop), they make whole turns (kTurnStops), the detector is not late
-/// (kDetectorStops) and lists go out (kListsStop). Whatever stops is said within 300 ms when this
-/// is asked every 20 ms. Without IMU and encoder the robot sees less well, and is not blind.
+/// (kDetectorStops) and lists go out (kListsStop). It is blind too where a setting is so wrong that
+/// the lists cannot be right; they go out all the same, for whoever looks for the mistake. Whatever
+/// stops is said within 300 ms when this is asked every 20 ms. Without IMU and encoder the robot
+/// sees less well, and is not blind.
 class HealthWatch {
 public:
   // A VLP-16 turns at least 5 times a second (its manual, rotation speed: 300 to 1200 rpm), so that
@@ -46,7 +51,8 @@ public:
   HealthWatch(const Settings& settings, std::int64_t now_ns);
 
   /// Brings `health` up to date: its state and reason, and what concerns the sensors. True when one
-  /// of these changed: the reason, the state of a sensor, of its clock or of the encoder's bus.
+  /// of these changed: the reason, what is wrong with the settings, the state of a sensor, of its
+  /// clock or of the encoder's bus.
   bool update(std::int64_t now_ns, const LidarStatus& lidar, const ImuStatus& imu,
               const EncoderStatus& encoder, const DetectorStatus& detector, health_t& health);
   /// What the last update found worth a line in the log.
@@ -64,6 +70,7 @@ private:
   void add_line(bool is_warning, std::string text) {
     log_.push_back({is_warning, std::move(text)});
   }
+  bool update_setup(const SetupReport& setup, health_t& health);
   void log_sight(std::int64_t now_ns, const std::string& reason);
   void log_first_packets(const LidarStatus& lidar);
   void log_pulses(const LidarStatus& lidar);
@@ -74,6 +81,7 @@ private:
   LogLines log_;
   SensorWatch lidar_, imu_, encoder_;
   velodyne::Firmware logged_firmware_ = velodyne::Firmware::undecided;
+  std::uint32_t named_faults_ = 0;  // a bit for each SetupFault
   bool logs_sight_ = true;
   std::string logged_reason_;
   std::int64_t logged_at_ns_ = 0;

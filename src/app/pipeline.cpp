@@ -53,6 +53,7 @@ Pipeline::Pipeline(const Settings& settings, const Networks& networks)
     : lidar_(settings.lidar),
       sensors_(std::make_unique<SyncBuffer>()),
       mapper_(std::make_unique<Mapper>(settings)),
+      setup_(std::make_unique<SetupProbe>(settings)),
       map_detector_(settings.detect_map, settings.memory.for_map(), networks.map),
       sweep_detector_(settings.detect_sweep, settings.memory.for_sweep(), networks.sweep),
       tracker_(settings.track, static_cast<std::size_t>(settings.memory.obstacles), networks.judge),
@@ -90,8 +91,18 @@ const ObstacleList& Pipeline::process(const Sweep& sweep) {
   } else {
     detect_in_sweep(sweep);
   }
+  check_setup(sweep);
   has_looked_ = sweep.is_whole && !ground().empty();
   return list_;
+}
+
+void Pipeline::check_setup(const Sweep& sweep) {
+  setup_->add(sweep, *sensors_);
+  setup_report_ = setup_->report();
+  for (const BodyBox& box : std::as_const(*mapper_).own_returns().found()) {
+    setup_report_.add({.fault = SetupFault::robot_body, .set = box.low, .high = box.high});
+  }
+  timer_.done(Stage::setup);
 }
 
 void Pipeline::detect_in_map() {

@@ -11,7 +11,7 @@ const ObstacleList* PipelineProcessor::operator()(const Sweep& sweep, DetectionR
   pipeline_.set_tracking(tracking_.get());
   const ObstacleList& list = pipeline_.process(sweep);
   add_drops();
-  report = {drops_, motion_report(), pipeline_.stage_times(), pipeline_.grid()};
+  report = {drops_, motion_report(), pipeline_.setup(), pipeline_.stage_times(), pipeline_.grid()};
   return pipeline_.has_looked() ? &list : nullptr;
 }
 

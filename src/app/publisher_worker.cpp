@@ -87,8 +87,12 @@ void PublisherWorker::publish(TimedObstacleList& timed) {
 void PublisherWorker::update_health(std::int64_t now_ns) {
   outputs_.set_zone(zone_.get());
   status_ = get_status_();
-  const DetectorStatus detector{status_.detector_loop_ns, last_list_ns_, status_.sweeps_not_covered,
-                                statistics_.motion().slips, statistics_.motion().heading_resets};
+  const DetectorStatus detector{status_.detector_loop_ns,
+                                last_list_ns_,
+                                status_.sweeps_not_covered,
+                                statistics_.motion().slips,
+                                statistics_.motion().heading_resets,
+                                statistics_.setup()};
   bool has_changed =
       watch_.update(now_ns, status_.lidar, status_.imu, status_.encoder, detector, health_);
   has_changed = drive_outputs(now_ns) || has_changed;

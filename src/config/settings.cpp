@@ -16,8 +16,7 @@ DetectSettings DetectSettings::for_paper() {
 DetectSettings DetectSettings::for_cloud() {
   DetectSettings detect;
   detect.surface.clustering = SurfaceClustering::regions;
-  detect.surface.saddle = 0.65;  // without beams grass falls apart more easily
-  detect.min_confidence = 0.8;   // ... and looks like stones
+  detect.min_confidence = 0.8;  // without beams grass looks like stones
   detect.network = "network_cloud.txt";
   return detect;
 }

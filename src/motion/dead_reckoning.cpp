@@ -37,8 +37,9 @@ void DeadReckoning::integrate_to(const SyncBuffer& sensors, std::int64_t t_ns) {
   if (wheel) {
     // A wheel that was silent begins anew: what it rolled meanwhile is extrapolated already.
     moved = state_.knows_distance ? wheel->distance - wheel_ : wheel->speed * seconds;
+    moved -= logarithm(state_.attitude.conjugate() * measured).cross(wheel_place_).x();
     wheel_ = wheel->distance;
-    speed_ = wheel->speed;
+    speed_ = wheel->speed - rate_.cross(wheel_place_).x();
   }
   next.position += state_.attitude.slerp(0.5, next.attitude) * Eigen::Vector3d(moved, 0, 0);
   distance_ += moved;

@@ -4,7 +4,7 @@
 
 #include "scree/core/rotation.hpp"
 #include "scree/motion/pose_filter.hpp"
-#include "specific_force.hpp"
+#include "scree/motion/specific_force.hpp"
 
 namespace scree {
 namespace {

@@ -1,7 +1,5 @@
 #include "scree/motion/pose_filter.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -186,28 +184,18 @@ void PoseFilter::realign_level_frame(const MotionStep& step) {
 }
 
 void PoseFilter::begin_update() {
-  covariance_ = 0.5 * (covariance_ + covariance_.transpose()).eval();
-  covariance_.diagonal().array() += 1e-12;
-  prior_ = covariance_.inverse();
-  applied_.setZero();
+  update_.begin(covariance_);
 }
 
 double PoseFilter::update(const PoseEvidence& evidence) {
-  Covariance information = prior_;
-  information.topLeftCorner<6, 6>() += evidence.information;
-  Errors gradient = prior_ * applied_;
-  gradient.head<6>() += evidence.gradient;
-  const Errors correction = -information.llt().solve(gradient);
-  if (!correction.allFinite()) return 0;
-  apply(correction);
-  applied_ += correction;
-  return correction.head<6>().norm();
+  const auto correction = update_.round(evidence);
+  if (!correction) return 0;
+  apply(*correction);
+  return correction->head<6>().norm();
 }
 
 void PoseFilter::end_update(const PoseEvidence& evidence) {
-  Covariance information = prior_;
-  information.topLeftCorner<6, 6>() += evidence.information;
-  covariance_ = information.inverse();
+  update_.end(evidence, covariance_);
 }
 
 void PoseFilter::apply(const Errors& error) {

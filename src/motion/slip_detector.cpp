@@ -4,21 +4,23 @@
 #include <cmath>
 #include <optional>
 
-#include "specific_force.hpp"
+#include "scree/core/rotation.hpp"
+#include "scree/motion/specific_force.hpp"
 
 namespace scree {
-namespace {
 
-/// The mean over an interval; nothing where the wheel was silent.
-std::optional<double> wheel_speed(const SyncBuffer& sensors, std::int64_t begin_ns,
-                                  std::int64_t end_ns) {
+/// The mean speed of `base` by the wheel over an interval; nothing where that was silent.
+std::optional<double> SlipDetector::wheel_speed(const SyncBuffer& sensors, std::int64_t begin_ns,
+                                                std::int64_t end_ns) const {
   const auto begin = sensors.wheel_at(begin_ns), end = sensors.wheel_at(end_ns);
   if (!end) return std::nullopt;
   const double seconds = static_cast<double>(end_ns - begin_ns) * 1e-9;
-  return begin ? (end->distance - begin->distance) / seconds : end->speed;
+  const double rolled = begin ? (end->distance - begin->distance) / seconds : end->speed;
+  const auto from = sensors.attitude_at(begin_ns), to = sensors.attitude_at(end_ns);
+  if (!from || !to) return rolled;
+  const Eigen::Vector3d turn = mount_ * logarithm(from->rotation.conjugate() * to->rotation);
+  return rolled - turn.cross(wheel_place_).x() / seconds;
 }
-
-}  // namespace
 
 void SlipDetector::advance(const SyncBuffer& sensors, std::int64_t begin_ns, std::int64_t end_ns,
                            double speed) {

@@ -1,4 +1,4 @@
-#include "specific_force.hpp"
+#include "scree/motion/specific_force.hpp"
 
 #include <algorithm>
 

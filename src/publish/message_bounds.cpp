@@ -98,7 +98,8 @@ bool is_health(std::span<const std::uint8_t> message) {
   walk.skip(kByte);
   walk.text();  // reason
   walk.skip(kByte);
-  walk.text();  // lines_problem
+  walk.each(walk.count(), [&] { walk.text(); });  // setup
+  walk.text();                                    // lines_problem
   for (int sensor = 0; sensor < 3; ++sensor) skip_sensor(walk);
   walk.skip(kLong);
   walk.text();  // encoder_bus

@@ -37,8 +37,9 @@ Eigen::Vector3f transformed(const Pose& pose, const Eigen::Vector3f& point) {
 }
 
 /// Standard deviation of points 3 m off, metres.
-double uncertainty_of(const PoseFilter& filter) {
-  const auto variances = filter.covariance().diagonal();
+template <class Filter>
+double uncertainty_of(const Filter& filter) {
+  const Eigen::Matrix<double, 6, 1> variances = filter.covariance().diagonal().template head<6>();
   return std::sqrt(variances.head<3>().maxCoeff() + 9 * variances.segment<3>(3).maxCoeff());
 }
 
@@ -111,8 +112,9 @@ Registration::Linearization Registration::linearize(const Pose& pose, double unc
   return sum;
 }
 
+template <class Filter>
 Registration::Outcome Registration::align(const DeskewedSweep& sweep, SurfelMap& map,
-                                          PoseFilter& filter) {
+                                          Filter& filter) {
   constexpr double kUncertaintyAfter = 0.02;  // metres: the first round has found the pose roughly
   Outcome outcome;
   choose_key_points(sweep, map, filter.pose());
@@ -137,5 +139,8 @@ Registration::Outcome Registration::align(const DeskewedSweep& sweep, SurfelMap&
   outcome.correction = (filter.pose().translation - predicted).norm();
   return outcome;
 }
+
+template Registration::Outcome Registration::align(const DeskewedSweep&, SurfelMap&, PoseFilter&);
+template Registration::Outcome Registration::align(const DeskewedSweep&, SurfelMap&, TwistFilter&);
 
 }  // namespace scree

@@ -20,8 +20,23 @@ constexpr float kMinWidth = 0.12F;  // of the cell's edge
 
 }  // namespace
 
-SurfelMap::SurfelMap(float cell) : cell_(cell), inverse_(1 / cell), cells_(Grid::kSlots) {
+SurfelMap::SurfelMap(float cell, int width, int height)
+    : cell_(cell),
+      inverse_(1 / cell),
+      width_(width),
+      height_(height),
+      cells_(static_cast<std::size_t>(width) * static_cast<std::size_t>(width) *
+             static_cast<std::size_t>(height)) {
   cells_.resize(cells_.capacity());
+}
+
+std::size_t SurfelMap::slot(const Grid::CellIndex& index) const {
+  const auto wrapped = [](std::int32_t value, int size) {
+    return static_cast<std::size_t>(value & (size - 1));
+  };
+  const auto width = static_cast<std::size_t>(width_);
+  return (wrapped(index.z, height_) * width + wrapped(index.y, width_)) * width +
+         wrapped(index.x, width_);
 }
 
 void SurfelMap::clear() {
@@ -37,7 +52,7 @@ Eigen::Vector3f SurfelMap::middle(const Cell& cell) const {
 
 void SurfelMap::add(const Eigen::Vector3f& point) {
   const Grid::CellIndex index = Grid::index_of(point, inverse_);
-  Cell& cell = cells_[index.slot()];
+  Cell& cell = cells_[slot(index)];
   if (!cell.is_used || cell.index != index) {
     cell = Cell();
     cell.index = index;
@@ -67,7 +82,7 @@ void SurfelMap::add(const Eigen::Vector3f& point) {
 
 const Surfel* SurfelMap::at(const Eigen::Vector3f& point) {
   const Grid::CellIndex index = Grid::index_of(point, inverse_);
-  Cell& cell = cells_[index.slot()];
+  Cell& cell = cells_[slot(index)];
   if (!cell.is_used || cell.index != index) return nullptr;
   if (!cell.is_fresh) fit(cell);
   return cell.is_plane ? &cell.surfel : nullptr;

@@ -118,6 +118,21 @@ class FieldTest(ProgramTest):
         result = self.run_to_end(SCREE, "info", os.path.join(folder, "cap.pcap.gz"))
         self.assert_fails(result, "is packed with gzip: unpack it first")
 
+    def test_a_step_of_the_hosts_clock_ahead_changes_nothing(self):
+        make = self.field("clock_step/make.py")
+        drive = os.path.join(DATA, "captures/interop")
+        last = {}
+        for step in ("0", "0.4", "2"):
+            out = self.path("step" + step)
+            self.done(sys.executable, make, drive, out, step)
+            result = self.done(SCREE, "detect", out)
+            last[step] = json.loads(result.stdout.splitlines()[-1])
+            self.assertEqual("the host's clock was set" in result.stderr, step != "0", step)
+        for step, line in last.items():
+            apart = math.dist(line["pose"]["p"], last["0"]["pose"]["p"])
+            self.assertLess(apart, 0.02, step)
+            self.assertEqual(len(line["obstacles"]), len(last["0"]["obstacles"]), step)
+
     def test_headers_that_other_programs_write_are_read(self):
         folder = self.field("pcd_headers")
         for name in ("bom.pcd", "lower_case_types.pcd"):

@@ -5,6 +5,7 @@
 
 #include "scree/core/obstacle_grid.hpp"
 #include "scree/core/stage_times.hpp"
+#include "scree/motion/setup_report.hpp"
 
 namespace scree {
 
@@ -29,6 +30,7 @@ struct MotionReport {
 struct DetectionReport {
   DropCounts drops;
   MotionReport motion;
+  SetupReport setup{};  ///< the settings that the sensors contradict
   StageTimes stage_times{};
   const ObstacleGrid* grid = nullptr;  ///< valid as long as the list; null without one
 };

@@ -17,6 +17,7 @@
 #include "scree/detect/tracker.hpp"
 #include "scree/sync/sync_buffer.hpp"
 #include "scree/terrain/mapper.hpp"
+#include "scree/terrain/setup_probe.hpp"
 
 namespace scree {
 
@@ -60,6 +61,8 @@ public:
   const Detector& detector() const { return uses_map_ ? map_detector_ : sweep_detector_; }
   const PointCloud& ground() const { return uses_map_ ? mapper_->map().cloud() : sweep_.points; }
   const Mapper& mapper() const { return *mapper_; }
+  /// The settings that the sensors contradict.
+  const SetupReport& setup() const { return setup_report_; }
   const Tracker& tracker() const { return uses_map_ ? tracker_ : sweep_tracker_; }
   /// What the trackers had no room for, standing or moving.
   std::uint64_t tracks_dropped() const {
@@ -70,6 +73,7 @@ public:
   StageCounts counts() const;
 
 private:
+  void check_setup(const Sweep& sweep);
   void detect_in_map();
   void add_moving();
   float ground_at(const Eigen::Vector3d& place) const;
@@ -78,6 +82,8 @@ private:
   LidarSettings lidar_;
   std::unique_ptr<SyncBuffer> sensors_;
   std::unique_ptr<Mapper> mapper_;
+  std::unique_ptr<SetupProbe> setup_;
+  SetupReport setup_report_;
   Detector map_detector_, sweep_detector_;
   Tracker tracker_, sweep_tracker_;
   MovingTracker moving_tracker_;

@@ -34,7 +34,7 @@ void for_every_key(AnySettings& settings, Visit&& visit) {
 
   table = "imu";
   auto& imu = settings.imu;
-  key("device", imu.device, "", 0, 0, "serial port of the Xsens MTi");
+  key("device", imu.device, "", 0, 0, "serial port of the Xsens MTi; empty: there is none");
   key("baud", imu.baud, "bit/s", 4800, 4000000, "its bit rate");
   key("configure", imu.configure, "", 0, 0,
       "set up its bit rate and its outputs at start; with false it is taken as it is and nothing "
@@ -51,7 +51,8 @@ void for_every_key(AnySettings& settings, Visit&& visit) {
 
   table = "encoder";
   auto& encoder = settings.encoder;
-  key("interface", encoder.interface, "", 0, 0, "SocketCAN interface of the wheel encoder");
+  key("interface", encoder.interface, "", 0, 0,
+      "SocketCAN interface of the wheel encoder; empty: there is none");
   key("dbc", encoder.dbc, "", 0, 0,
       "DBC file that says where the signal lies, beside this file; empty: the keys can_id to "
       "signed say it");
@@ -68,6 +69,9 @@ void for_every_key(AnySettings& settings, Visit&& visit) {
   key("scale", encoder.scale, "m or m/s", -1e6, 1e6,
       "metres per count, or m/s per unit; with a DBC file per unit of its physical value: 0.277778 "
       "for km/h; below zero where the wheel counts backwards");
+  key("translation", encoder.translation, "m", -100, 100,
+      "where the wheel touches the ground, in base: x, y, z; a wheel beside the middle rolls "
+      "farther on the outer side of a turn");
   key("max_speed", encoder.max_speed, "m/s", 0.1, 200,
       "readings that ask for a faster wheel are refused, and counted");
   key("max_acceleration", encoder.max_acceleration, "m/s^2", 0.1, 1000,

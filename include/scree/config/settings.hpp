@@ -109,6 +109,7 @@ struct EncoderSettings {
   bool is_signed = true;
   EncoderKind kind = EncoderKind::counter;
   double scale = 0.000157;
+  Eigen::Vector3d translation{0, 0, 0};
   double max_speed = 5.0;
   double max_acceleration = 10.0;
 
@@ -175,8 +176,8 @@ struct TrackingSettings {
   std::string network = "network_track.txt";
   std::uint32_t least_found = 2;  ///< lists that have a published obstacle
   double smoothing = 0.4;
-  double appear = 0.35;
-  double disappear = 0.25;
+  double appear = 0.22;
+  double disappear = 0.15;
   double remember = 1.0;
   double reach = 10;
 };
@@ -225,7 +226,7 @@ struct SurfaceSettings {
   double kernel_shared = 0;
 
   SurfaceClustering clustering = SurfaceClustering::euclidean;
-  double saddle = 0.75;
+  double saddle = 0.6;
   double cluster_tolerance = 0.20;
   int min_cluster_size = 4;
 };

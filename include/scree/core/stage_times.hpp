@@ -21,13 +21,14 @@ enum class Stage : std::uint8_t {
   features,
   network,
   tracking,
-  grid,  ///< of what is free, occupied or unknown
+  grid,   ///< of what is free, occupied or unknown
+  setup,  ///< whether the sensors contradict the settings
 };
 
 /// In health, in the order of Stage.
-inline constexpr std::array<std::string_view, 13> kStageNames = {
+inline constexpr std::array<std::string_view, 14> kStageNames = {
     "motion",      "registration", "map",      "voxel_grid", "surface",  "gradient", "suppression",
-    "supervoxels", "clusters",     "features", "network",    "tracking", "grid"};
+    "supervoxels", "clusters",     "features", "network",    "tracking", "grid",     "setup"};
 
 /// How long each stage of one list took, nanoseconds; kDidNotRun of one that did not run.
 using StageTimes = std::array<std::int64_t, kStageNames.size()>;

@@ -26,8 +26,8 @@ struct MotionStep {
 };
 
 /// Dead reckoning of `base`: attitude from the IMU, distance from the encoder along the x axis of
-/// `base` (no slip to the sides). Where a sensor is silent the last angular rate or speed is kept,
-/// or what is assumed instead.
+/// `base` (no slip to the sides), less what the wheel rolls because the robot turns. Where a sensor
+/// is silent the last angular rate or speed is kept, or what is assumed instead.
 class DeadReckoning {
 public:
   /// After a longer wait for the next end, or where it is not later than the last, the clock was
@@ -36,7 +36,10 @@ public:
   static constexpr std::int64_t kLongestWaitNs = 10'000'000'000;
 
   /// @param imu_mount rotation imu -> base
-  explicit DeadReckoning(const Eigen::Quaterniond& imu_mount) : imu_mount_(imu_mount) {}
+  /// @param wheel where it touches the ground, in `base`, metres
+  explicit DeadReckoning(const Eigen::Quaterniond& imu_mount,
+                         const Eigen::Vector3d& wheel = Eigen::Vector3d::Zero())
+      : imu_mount_(imu_mount), wheel_place_(wheel) {}
 
   /// Goes from the end of the last step (the first: `begin_ns`) to `end_ns`.
   /// @param trajectory gets the last 0.3 s of it at most
@@ -65,6 +68,7 @@ private:
   void write(SweepTrajectory& trajectory, std::int64_t step_ns) const;
 
   Eigen::Quaterniond imu_mount_;
+  Eigen::Vector3d wheel_place_;
   State state_, begin_;  // now, and at the begin of the step under way; positions since then
   std::int64_t now_ns_ = 0;
   double wheel_ = 0;     // its distance at now_ns_, while that is known

@@ -5,15 +5,9 @@
 
 #include "scree/core/pose.hpp"
 #include "scree/motion/dead_reckoning.hpp"
+#include "scree/motion/iterated_update.hpp"
 
 namespace scree {
-
-/// What a measurement knows of a pose: the sum of squares e^T information e + 2 gradient^T e of an
-/// error e. That is the position in the map's frame (m), then the rotation vector in it (rad).
-struct PoseEvidence {
-  Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
-  Eigen::Matrix<double, 6, 1> gradient = Eigen::Matrix<double, 6, 1>::Zero();
-};
 
 /// The pose of `base` in the map's frame, and how well it is known: an iterated extended Kalman
 /// filter. It predicts by dead reckoning; evidence from registration corrects it only in the
@@ -78,9 +72,7 @@ private:
   double tilt_before_ = 0, yaw_before_ = 0;  // variances
   double silent_s_ = 0;
   double rest_s_ = 0;
-  // During an update.
-  Covariance prior_;
-  Errors applied_;
+  IteratedUpdate<kErrors> update_;
 };
 
 }  // namespace scree

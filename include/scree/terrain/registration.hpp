@@ -2,6 +2,7 @@
 
 #include "scree/motion/deskew.hpp"
 #include "scree/motion/pose_filter.hpp"
+#include "scree/motion/twist_filter.hpp"
 #include "scree/terrain/surfel_map.hpp"
 
 namespace scree {
@@ -20,8 +21,10 @@ public:
     double residual = 0;    ///< root of the mean square of the distances, metres
     double correction = 0;  ///< metres
   };
-  /// @param sweep in `base`
-  Outcome align(const DeskewedSweep& sweep, SurfelMap& map, PoseFilter& filter);
+  /// @param sweep in `base`, or for a TwistFilter in the lidar's frame
+  /// @tparam Filter PoseFilter or TwistFilter
+  template <class Filter>
+  Outcome align(const DeskewedSweep& sweep, SurfelMap& map, Filter& filter);
 
 private:
   /// What the key points at one pose say about it.

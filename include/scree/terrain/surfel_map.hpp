@@ -27,7 +27,8 @@ struct Surfel {
 class SurfelMap {
 public:
   /// @param cell edge, metres
-  explicit SurfelMap(float cell);
+  /// @param width, height of the grid in cells, powers of two: 38 m x 38 m x 19 m at cells of 0.3 m
+  explicit SurfelMap(float cell, int width = 128, int height = 64);
 
   void add(const Eigen::Vector3f& point);
 
@@ -37,7 +38,6 @@ public:
   void clear();
 
 private:
-  // 38 m x 38 m x 19 m at cells of 0.3 m.
   using Grid = ToroidalGrid<128, 64>;
 
   struct Cell {
@@ -54,7 +54,10 @@ private:
   Eigen::Vector3f middle(const Cell& cell) const;
   void fit(Cell& cell) const;
 
+  std::size_t slot(const Grid::CellIndex& index) const;
+
   float cell_, inverse_;
+  int width_, height_;
   FixedVector<Cell> cells_;
 };
 

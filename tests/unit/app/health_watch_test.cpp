@@ -300,5 +300,56 @@ TEST_F(HealthWatchTest, AnotherReasonAndAnotherStateOfAClockAreChanges) {
   EXPECT_TRUE(changed_);
 }
 
+TEST_F(HealthWatchTest, NamesASettingThatTheSensorsContradict) {
+  drive(100);
+  ASSERT_EQ(health_.state, health_t::OK);
+  SetupReport wrong;
+  wrong.count = 1;
+  wrong.findings[0] = {.fault = SetupFault::encoder_place, .off = 0.3, .set = {0, 0.3, 0}};
+  const auto with = [this](const SetupReport& setup) {
+    now_ += 100 * kMillisecond;
+    packet();
+    detector_ = {now_, now_, 0, 0, 0, setup};
+    return update();
+  };
+  EXPECT_THAT(with(wrong), HasSubstr("W encoder.translation looks 0.30 m"));
+  EXPECT_TRUE(changed_);
+  EXPECT_EQ(health_.state, health_t::OK);
+  EXPECT_THAT(health_.setup, Contains(HasSubstr("encoder.translation")));
+  EXPECT_THAT(with(wrong), Not(HasSubstr("encoder.translation")));
+  EXPECT_THAT(with({}), Not(HasSubstr("encoder")));
+  EXPECT_THAT(health_.setup, IsEmpty());
+}
+
+TEST_F(HealthWatchTest, IsBlindWhereASettingSpoilsTheLists) {
+  drive(100);
+  SetupReport wrong;
+  wrong.count = 1;
+  wrong.findings[0] = {
+      .fault = SetupFault::encoder_scale, .is_grave = true, .off = 2, .set = {0.0001, 0, 0}};
+  now_ += 100 * kMillisecond;
+  packet();
+  detector_ = {now_, now_, 0, 0, 0, wrong};
+  EXPECT_THAT(update(), HasSubstr("W blind: encoder.scale looks 2.0 times too large: set 0.0001"));
+  EXPECT_EQ(health_.state, health_t::BLIND);
+}
+
+TEST_F(HealthWatchTest, DoesNotMissASensorThatIsSwitchedOff) {
+  Settings without = settings();
+  without.imu.device.clear();
+  without.encoder.interface.clear();
+  watch_ = HealthWatch(without, now_);
+  std::string log;
+  for (int i = 0; i < 100; ++i) {
+    now_ += 100 * kMillisecond;
+    datagram();
+    packet();
+    detector_ = {now_, now_};
+    log += update();
+  }
+  EXPECT_THAT(log, Not(HasSubstr("IMU")));
+  EXPECT_THAT(log, Not(HasSubstr("encoder")));
+}
+
 }  // namespace
 }  // namespace scree

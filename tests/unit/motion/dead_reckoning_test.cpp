@@ -232,5 +232,23 @@ TEST(DeadReckoning, TakesInstantsThatAreOneAndAllocatesNothing) {
   EXPECT_GT(made, before);
 }
 
+/// The wheel of a robot that turns on the spot rolls round the middle.
+TEST(DeadReckoningTest, KnowsWhereTheWheelIs) {
+  const double beside = 0.3, rate = 0.5;
+  test::SimpleDrive drive = test::helix(0, rate, 0);
+  drive.distance = [=](double t) { return -rate * beside * t; };
+  auto sensors = std::make_unique<SyncBuffer>();
+  drive.put(*sensors, 0, 6);
+  DeadReckoning reckoning(drive.imu_mount, {0, beside, 0});
+  SweepTrajectory trajectory;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  for (double end = kSweep; end < 5.9; end += kSweep) {
+    position += reckoning.advance(*sensors, nanoseconds(end - kSweep), nanoseconds(end), trajectory)
+                    .displacement;
+  }
+  EXPECT_LT(position.norm(), 1e-3);
+  EXPECT_NEAR(reckoning.speed(), 0, 1e-3);
+}
+
 }  // namespace
 }  // namespace scree

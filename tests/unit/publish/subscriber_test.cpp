@@ -96,6 +96,8 @@ health_t whole_health() {
   health_t health{};
   health.version = "1.0";
   health.reason = "";
+  health.setup_size = 2;
+  health.setup = {"one", "another"};
   health.lidar.reasons = 2;
   health.lidar.refused_reason = {"size", "late"};
   health.lidar.refused = {1, 2};

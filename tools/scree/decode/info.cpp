@@ -10,6 +10,7 @@
 #include "commands.hpp"
 #include "common/time_span.hpp"
 #include "decode/info_motion.hpp"
+#include "decode/settings_check.hpp"
 #include "read/lidar_capture.hpp"
 #include "scree/core/ipv4.hpp"
 #include "scree/drivers/velodyne/position_packet.hpp"
@@ -184,6 +185,7 @@ void print_table(const Json& info) {
                     listed(port["sizes"], "-"), listed(port["senders"], "-")));
   }
   row("other frames", listed(info["frames"], "-"));
+  for (const Json& mistake : info["settings"]) row("settings", mistake);
   for (const char* key : {"firmware", "broken_off", "two_senders"}) {
     if (const std::string note = info[key]; !note.empty()) row("note", note);
   }
@@ -194,13 +196,20 @@ void inform(const InfoOptions& options) {
   LidarCapture capture(options.capture, settings);
   SweepRate sweep_rate;
   Position position;
-  const auto stream = std::make_unique<LidarStream>(
-      settings.lidar, [&](const Sweep& sweep) { sweep_rate.see(sweep); });
-  capture.play(*stream, [&](const Datagram& datagram) {
-    if (datagram.destination_port == settings.lidar.position_port) position.see(datagram);
+  const auto check = std::make_unique<SettingsCheck>(options.capture, options.config, settings);
+  const auto stream = std::make_unique<LidarStream>(settings.lidar, [&](const Sweep& sweep) {
+    sweep_rate.see(sweep);
+    check->add(sweep);
   });
+  capture.play(
+      *stream,
+      [&](const Datagram& datagram) {
+        if (datagram.destination_port == settings.lidar.position_port) position.see(datagram);
+      },
+      [&](std::int64_t arrival_ns) { check->play_until(arrival_ns); });
   Json info = describe(capture, *stream, sweep_rate, position, settings.lidar.model);
   info.update(describe_rest(options.capture, options.config));
+  info["settings"] = check->finish();
   if (options.json) {
     fmt::print("{}\n", info.dump(2, ' ', false, Json::error_handler_t::replace));
   } else {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "commands.hpp"
+#include "detection/setup_log.hpp"
 #include "detection/waiting_sweeps.hpp"
 #include "scree/capture/capture.hpp"
 
@@ -46,12 +47,17 @@ void warn(std::string_view what, std::uint64_t count, std::string_view reason) {
 PipelineCapture::PipelineCapture(const std::filesystem::path& capture,
                                  const std::filesystem::path& config)
     : settings_(capture_settings(capture, config)),
-      lidar_(capture, settings_),
+      steps_(find_host_steps(capture, settings_.lidar)),
+      lidar_(capture, settings_, steps_),
       pipeline_(make_pipeline(settings_, capture, config)),
-      motion_(capture, config, settings_, pipeline_.sensors()) {}
+      motion_(capture, config, settings_, pipeline_.sensors(), steps_) {}
 
 void PipelineCapture::play(const std::function<void(const Sweep&)>& process) {
-  WaitingSweeps waiting(settings_.map.wait, pipeline_.sensors(), process);
+  SetupLog setup;
+  WaitingSweeps waiting(settings_.map.wait, pipeline_.sensors(), [&](const Sweep& sweep) {
+    process(sweep);
+    setup.add(pipeline_.setup());
+  });
   std::int64_t now_ns = 0;
   velodyne::LidarStream stream(settings_.lidar, [&](Sweep& sweep) {
     if (!sweep.points.empty()) waiting.push(sweep, now_ns);
@@ -72,6 +78,11 @@ void PipelineCapture::play(const std::function<void(const Sweep&)>& process) {
   motion_.finish();
   report_capture(lidar_, stream);
   motion_.report(lidar_.span());
+  for (const HostStep& step : steps_) {
+    fmt::print(stderr, "scree: the host's clock was set by {:+.3f} s on the way: taken out\n",
+               static_cast<double>(step.by_ns) * 1e-9);
+  }
+  for (const std::string& mistake : setup.sentences()) fmt::print(stderr, "scree: {}\n", mistake);
   warn_of_losses(pipeline_, waiting);
 }
 

@@ -31,6 +31,7 @@ public:
 
 private:
   Settings settings_;
+  HostSteps steps_;
   LidarCapture lidar_;
   Pipeline pipeline_;
   MotionCapture motion_;

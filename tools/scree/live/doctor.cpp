@@ -117,8 +117,10 @@ private:
     check_port("position port", "lidar.position_port", position, owner_of_port(position));
     if (!screed_) return add(ok("screed", "it does not run: this looks at the sensors itself"));
     if (const auto& health = listening.health()) {
-      return add(health->state == health_t::OK ? ok("screed", "it runs, and sees")
-                                               : wrong("screed", "it is blind: " + health->reason));
+      add(health->state == health_t::OK ? ok("screed", "it runs, and sees")
+                                        : wrong("screed", "it is blind: " + health->reason));
+      for (const std::string& mistake : health->setup) add(wrong("settings", mistake));
+      return;
     }
     add(wrong("screed", fmt::format("it runs, but its health does not come on {}: has its "
                                     "configuration another lcm.url?",
@@ -158,6 +160,7 @@ private:
 
   void check_imu(const Listening& listening) {
     const std::string& device = settings_.imu.device;
+    if (device.empty()) return add(ok("IMU", "imu.device is empty: there is none"));
     const Finding port = check_serial(device, look_at_serial(device));
     add(port);
     if (is_running()) {
@@ -175,6 +178,9 @@ private:
 
   void check_encoder(const Listening& listening) {
     const std::string& interface = settings_.encoder.interface;
+    if (interface.empty()) {
+      return add(ok("encoder", "encoder.interface is empty: there is none"));
+    }
     const Finding link = check_can_link(interface, look_at_can(interface));
     add(link);
     if (const auto& traffic = listening.encoder()) {

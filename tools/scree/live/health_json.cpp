@@ -75,6 +75,7 @@ std::string health_json(const health_t& health) {
                {"stop", health.stop != 0},
                {"lines_problem", health.lines_problem},
                {"version", health.version},
+               {"setup", health.setup},
                {"lidar", json_of(health.lidar)},
                {"imu", json_of(health.imu)},
                {"encoder", json_of(health.encoder)},

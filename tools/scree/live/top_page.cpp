@@ -67,7 +67,8 @@ void add_header(const TopView& view, Area& area) {
     return;
   }
   area.add(title, is_blind ? Tone::bad : health.stop != 0 ? Tone::warning : Tone::good);
-  area.add(!health.reason.empty() ? health.reason : health.lines_problem, Tone::bad);
+  const std::string setup = health.setup.empty() ? health.lines_problem : health.setup.front();
+  area.add(health.reason.empty() ? setup : health.reason, Tone::bad);
 }
 
 void add_sensor(const char* name, const sensor_health_t& sensor, Area& area) {

@@ -104,6 +104,7 @@ void append_text(const health_t& health, std::string& text) {
   append_sensor("lidar", health.lidar, "", text);
   append_sensor("imu", health.imu, "", text);
   append_sensor("encoder", health.encoder, ", bus " + health.encoder_bus, text);
+  for (const std::string& mistake : health.setup) text += "              " + mistake + '\n';
   if (!health.lines_problem.empty()) text += "              " + health.lines_problem + '\n';
   append_work(health, text);
   const std::string drops = text_of(drops_of(health));

@@ -43,15 +43,20 @@ EncoderSettings encoder_settings(const fs::path& capture, const fs::path& config
                                          settings_file(capture, config).value_or(fs::path())));
 }
 
-EncoderCapture::EncoderCapture(const fs::path& capture, const EncoderSettings& settings)
+EncoderCapture::EncoderCapture(const fs::path& capture, const EncoderSettings& settings,
+                               const HostSteps& steps)
     : name_(capture.string()),
       log_(value_or_fail(CanLogReader::open(value_or_fail(can_file(capture))))),
+      steady_(steps),
       settings_(settings) {}
 
 void EncoderCapture::play_until(std::int64_t arrival_ns, EncoderStream& stream,
                                 Progress* progress) {
   while (true) {
-    if (!has_next_) has_next_ = log_.next(next_, &interface_);
+    if (!has_next_) {
+      has_next_ = log_.next(next_, &interface_);
+      if (has_next_) next_.t_ns = steady_(next_.t_ns);
+    }
     if (!has_next_ || next_.t_ns > arrival_ns) return;
     has_next_ = false;
     if (progress != nullptr) (*progress)(log_.position());

@@ -7,6 +7,7 @@
 
 #include "common/progress.hpp"
 #include "common/time_span.hpp"
+#include "read/host_steps.hpp"
 #include "scree/capture/can_log.hpp"
 #include "scree/config/settings.hpp"
 #include "scree/drivers/encoder/encoder_stream.hpp"
@@ -21,8 +22,10 @@ EncoderSettings encoder_settings(const std::filesystem::path& capture,
 /// The encoder's part of a capture, and what was seen of it while it was played.
 class EncoderCapture {
 public:
+  /// @param steps taken out of all times
   /// Throws Failure.
-  EncoderCapture(const std::filesystem::path& capture, const EncoderSettings& settings);
+  EncoderCapture(const std::filesystem::path& capture, const EncoderSettings& settings,
+                 const HostSteps& steps = {});
 
   /// Plays the frames of the encoder's interface that had arrived by then into the stream.
   void play_until(std::int64_t arrival_ns, encoder::EncoderStream& stream,
@@ -39,6 +42,7 @@ public:
 private:
   std::string name_;
   CanLogReader log_;
+  SteadyTime steady_;
   EncoderSettings settings_;
   std::map<std::string, std::uint64_t> frames_;  // by interface
   TimeSpan span_;

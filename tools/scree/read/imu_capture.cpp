@@ -37,12 +37,15 @@ PcapReader open_imu(const std::filesystem::path& capture) {
   return reader;
 }
 
-ImuCapture::ImuCapture(const std::filesystem::path& capture)
-    : name_(capture.string()), reader_(open_imu(capture)) {}
+ImuCapture::ImuCapture(const std::filesystem::path& capture, const HostSteps& steps)
+    : name_(capture.string()), reader_(open_imu(capture)), steady_(steps) {}
 
 void ImuCapture::play_until(std::int64_t arrival_ns, ImuStream& stream, Progress* progress) {
   while (true) {
-    if (!has_next_) has_next_ = reader_.next(next_);
+    if (!has_next_) {
+      has_next_ = reader_.next(next_);
+      if (has_next_) next_.arrival_ns = steady_(next_.arrival_ns);
+    }
     if (!has_next_ || next_.arrival_ns > arrival_ns) return;
     has_next_ = false;
     if (progress != nullptr) (*progress)(reader_.position());

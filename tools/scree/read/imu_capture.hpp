@@ -6,6 +6,7 @@
 
 #include "common/progress.hpp"
 #include "common/time_span.hpp"
+#include "read/host_steps.hpp"
 #include "scree/capture/pcap_reader.hpp"
 #include "scree/drivers/xsens/imu_stream.hpp"
 
@@ -17,8 +18,9 @@ PcapReader open_imu(const std::filesystem::path& capture);
 /// The IMU's part of a capture, and what was seen of it while it was played.
 class ImuCapture {
 public:
+  /// @param steps taken out of all times
   /// Throws Failure.
-  explicit ImuCapture(const std::filesystem::path& capture);
+  explicit ImuCapture(const std::filesystem::path& capture, const HostSteps& steps = {});
 
   /// Plays what had arrived by then into the stream.
   void play_until(std::int64_t arrival_ns, xsens::ImuStream& stream, Progress* progress = nullptr);
@@ -39,6 +41,7 @@ public:
 private:
   std::string name_;
   PcapReader reader_;
+  SteadyTime steady_;
   PcapRecord next_;
   bool has_next_ = false;
   std::uint64_t reads_ = 0, bytes_ = 0;

@@ -30,8 +30,12 @@ Settings capture_settings(const std::filesystem::path& capture,
   return file ? value_or_fail(load_settings(*file)) : Settings{};
 }
 
-LidarCapture::LidarCapture(const std::filesystem::path& capture, const Settings& settings)
-    : name_(capture.string()), file_(capture, settings.lidar), settings_(settings.lidar) {}
+LidarCapture::LidarCapture(const std::filesystem::path& capture, const Settings& settings,
+                           const HostSteps& steps)
+    : name_(capture.string()),
+      file_(capture, settings.lidar),
+      steady_(steps),
+      settings_(settings.lidar) {}
 
 void LidarCapture::play(LidarStream& stream, const OnDatagram& on_other,
                         const std::function<void(std::int64_t)>& before) {
@@ -39,6 +43,7 @@ void LidarCapture::play(LidarStream& stream, const OnDatagram& on_other,
   Datagram datagram;
   while (file_.next(datagram)) {
     progress(file_.position());
+    datagram.arrival_ns = steady_(datagram.arrival_ns);
     if (datagrams_++ == 0) first_ns_ = datagram.arrival_ns;
     last_ns_ = datagram.arrival_ns;
     if (before) before(datagram.arrival_ns);

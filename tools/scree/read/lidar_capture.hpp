@@ -9,6 +9,7 @@
 
 #include "common/progress.hpp"
 #include "common/time_span.hpp"
+#include "read/host_steps.hpp"
 #include "read/lidar_file.hpp"
 #include "scree/config/settings.hpp"
 #include "scree/drivers/velodyne/lidar_stream.hpp"
@@ -31,8 +32,10 @@ struct PortTraffic {
 /// The lidar's part of a capture, and what was seen of it while it was played.
 class LidarCapture {
 public:
+  /// @param steps taken out of all times
   /// Throws Failure.
-  LidarCapture(const std::filesystem::path& capture, const Settings& settings);
+  LidarCapture(const std::filesystem::path& capture, const Settings& settings,
+               const HostSteps& steps = {});
 
   using OnDatagram = std::function<void(const Datagram&)>;
   /// Plays the whole file into the stream, as the daemon would receive it, and flushes the stream.
@@ -58,6 +61,7 @@ public:
 private:
   std::string name_;
   LidarFile file_;
+  SteadyTime steady_;
   LidarSettings settings_;
   std::map<std::uint16_t, PortTraffic> ports_;
   velodyne::OneSender senders_;

@@ -34,14 +34,14 @@ void put(SyncBuffer& sensors, const Sample& sample) {
 
 MotionCapture::MotionCapture(const std::filesystem::path& capture,
                              const std::filesystem::path& config, const Settings& settings,
-                             SyncBuffer& sensors)
+                             SyncBuffer& sensors, const HostSteps& steps)
     : encoder_settings_(encoder_settings(capture, config)),
       imu_stream_(settings.imu, [&sensors](const ImuSample& sample) { put(sensors, sample); }),
       encoder_stream_(encoder_settings_,
                       [&sensors](const EncoderSample& sample) { put(sensors, sample); }) {
   if (!std::filesystem::is_directory(capture)) return;
-  if (imu_file(capture)) imu_.emplace(capture);
-  if (can_file(capture)) encoder_.emplace(capture, encoder_settings_);
+  if (imu_file(capture)) imu_.emplace(capture, steps);
+  if (can_file(capture)) encoder_.emplace(capture, encoder_settings_, steps);
 }
 
 void MotionCapture::play_until(std::int64_t arrival_ns) {

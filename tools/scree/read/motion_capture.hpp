@@ -15,8 +15,9 @@ namespace scree::cli {
 class MotionCapture {
 public:
   /// Keeps a reference to the buffer. Throws Failure.
+  /// @param steps taken out of all times
   MotionCapture(const std::filesystem::path& capture, const std::filesystem::path& config,
-                const Settings& settings, SyncBuffer& sensors);
+                const Settings& settings, SyncBuffer& sensors, const HostSteps& steps = {});
 
   /// Plays what had arrived by then.
   void play_until(std::int64_t arrival_ns);

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "scree/core/pose.hpp"
+#include "scree/motion/iterated_update.hpp"
+#include "scree/motion/sweep_trajectory.hpp"
+
+namespace scree {
+
+/// The pose and the velocities of a lidar by its sweeps alone: an iterated extended Kalman filter
+/// that expects the velocities to stay. Its frame is that of the lidar at the first sweep. Beside
+/// PoseFilter it knows nothing of IMU, encoder and mounts, so that these can be held against it.
+///
+/// Its errors, in order: position (3, m), rotation vector (3, rad), velocity (3, m/s) and angular
+/// rate (3, rad/s), all in its frame.
+class TwistFilter {
+public:
+  static constexpr int kErrors = 12;
+  using Errors = Eigen::Matrix<double, kErrors, 1>;
+  using Covariance = Eigen::Matrix<double, kErrors, kErrors>;
+
+  TwistFilter();
+
+  void predict(double seconds);
+  // As those of PoseFilter.
+  void begin_update();
+  double update(const PoseEvidence& evidence);
+  void end_update(const PoseEvidence& evidence);
+  const Pose& pose() const { return pose_; }
+  const Covariance& covariance() const { return covariance_; }
+  bool knows_attitude() const { return false; }
+
+  /// Where the lidar was during the last `seconds`, by the velocities.
+  void write(SweepTrajectory& trajectory, double seconds) const;
+  /// The standard deviation of the velocity along a direction of the lidar's frame, m/s.
+  double speed_deviation(const Eigen::Vector3d& direction) const;
+
+private:
+  void apply(const Errors& error);
+
+  Pose pose_;
+  Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero(), rate_ = Eigen::Vector3d::Zero();
+  Covariance covariance_ = Covariance::Zero();
+  IteratedUpdate<kErrors> update_;
+};
+
+}  // namespace scree

@@ -1,0 +1,75 @@
+#include "scree/terrain/setup_probe.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scree/core/rotation.hpp"
+#include "scree/motion/specific_force.hpp"
+
+namespace scree {
+
+SetupProbe::SetupProbe(const Settings& settings)
+    : odometry_(static_cast<std::size_t>(settings.memory.sweep_points),
+                OwnReturns(settings.robot.body, settings.lidar.mount())),
+      watch_(settings) {
+  const Pose mount = settings.lidar.mount();
+  middle_ = mount.rotation.conjugate() *
+            Eigen::Vector3d(-mount.translation.x(), -mount.translation.y(), 0);
+  begin_window();
+}
+
+void SetupProbe::begin_window() {
+  window_ = {};
+  window_.is_bound = window_.has_imu = window_.has_wheel = true;
+  begin_ns_ = odometry_.end_ns();
+}
+
+void SetupProbe::add(const Sweep& sweep, const SyncBuffer& sensors) {
+  constexpr double kWindow = 0.45;  // seconds
+  if (!odometry_.add(sweep)) return begin_window();
+  add_step(sensors);
+  if (window_.seconds < kWindow) return;
+  end_window(sensors);
+  watch_.add(window_);
+  begin_window();
+}
+
+/// The way from the sweep before to the last one.
+void SetupProbe::add_step(const SyncBuffer& sensors) {
+  const std::int64_t begin_ns = odometry_.begin_ns(), end_ns = odometry_.end_ns();
+  window_.seconds += static_cast<double>(end_ns - begin_ns) * 1e-9;
+  window_.way += odometry_.step().translation;
+  window_.turn += logarithm(odometry_.step().rotation);
+  window_.is_bound = window_.is_bound && odometry_.is_bound();
+  const auto begin = sensors.attitude_at(begin_ns), end = sensors.attitude_at(end_ns);
+  window_.has_imu = window_.has_imu && begin && end;
+  if (window_.has_imu) {
+    window_.imu_turn += logarithm(begin->rotation.conjugate() * end->rotation);
+  }
+  const auto wheel_begin = sensors.wheel_at(begin_ns), wheel_end = sensors.wheel_at(end_ns);
+  window_.has_wheel = window_.has_wheel && wheel_begin && wheel_end;
+  if (window_.has_wheel) window_.wheel += wheel_end->distance - wheel_begin->distance;
+}
+
+void SetupProbe::end_window(const SyncBuffer& sensors) {
+  // However they are mounted, lidar and IMU turn by the same angle. Else registration has lost its
+  // way.
+  constexpr double kNoise = 0.015, kShare = 0.15;  // rad
+  const double turned = window_.turn.norm(), imu_turned = window_.imu_turn.norm();
+  if (window_.has_imu &&
+      std::abs(turned - imu_turned) > kNoise + kShare * std::max(turned, imu_turned)) {
+    window_.is_bound = false;
+  }
+  window_.around = fit_ground_around(odometry_.sweep().points);
+  if (window_.is_bound) window_.below = odometry_.ground_below(middle_);
+  const auto attitude = sensors.attitude_at(odometry_.end_ns());
+  if (!window_.has_imu || !attitude) return;
+  const auto force = integrate_specific_force(sensors.imu(), begin_ns_, odometry_.end_ns());
+  window_.imu_up = attitude->rotation.conjugate() * Eigen::Vector3d::UnitZ();
+  if (!force) return;
+  const Eigen::Vector3d moved = *force / window_.seconds - Eigen::Vector3d(0, 0, kGravity);
+  window_.has_force = true;
+  window_.imu_force = attitude->rotation.conjugate() * moved;
+}
+
+}  // namespace scree
