@@ -23,7 +23,7 @@ struct DetectorStatus {
   std::int64_t last_list_ns = 0;  ///< LCM took a list, of a sweep not older than kOldSweep
   std::uint64_t not_covered = 0;  ///< sweeps that waited in vain for samples of IMU or encoder
   std::uint64_t slips = 0, heading_resets = 0;  ///< see MotionReport
-  SetupReport setup{};                            ///< see DetectionReport
+  SetupReport setup{};                          ///< see DetectionReport
 };
 
 /// Decides from what the threads report whether the robot sees, and what a person should read in

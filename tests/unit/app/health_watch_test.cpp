@@ -317,7 +317,7 @@ TEST_F(HealthWatchTest, NamesASettingThatTheSensorsContradict) {
   EXPECT_EQ(health_.state, health_t::OK);
   EXPECT_THAT(health_.setup, Contains(HasSubstr("encoder.translation")));
   EXPECT_THAT(with(wrong), Not(HasSubstr("encoder.translation")));
-  EXPECT_THAT(with({}), Not(HasSubstr("encoder")));
+  EXPECT_THAT(with({}), Not(HasSubstr("encoder.translation")));
   EXPECT_THAT(health_.setup, IsEmpty());
 }
 

@@ -126,7 +126,7 @@ TEST_F(ConfigurationTest, StringsAreEscapedSoThatTheyReadBack) {
 
 TEST_F(ConfigurationTest, AProfileBesideTheFileIsReadInsteadOfTheShippedOne) {
   folder_.write("map.toml",
-                "[detect.map]\nsaddle = 0.4\nbody_height = 0.09\n[track]\nsmoothing = 0.5\n");
+                "[detect.map]\nsaddle = 0.6\nbody_height = 0.09\n[track]\nsmoothing = 0.5\n");
   const auto file = write("[track]\nsmoothing = 0.6\n");
   const auto read = read_configuration(file);
   ASSERT_TRUE(read) << read.error().message;

@@ -70,8 +70,8 @@ TEST(Settings, MistakesNameFileLineKeyAndWhatIsAccepted) {
   EXPECT_THAT(error_of("[lidar]\ntranslation = [1, 2]\n"),
               HasSubstr("three numbers, [x, y, z], accepted is -100 to 100 m"));
   EXPECT_THAT(error_of("[robot]\nbody = [[0, 0, 0], [1, 1, 1]]\n"),
-              AllOf(HasSubstr("robot.toml:2: robot.body"), HasSubstr("three numbers")));
-  EXPECT_THAT(error_of("[robot]\nbody = [[[0, 0, 0]]]\n"), HasSubstr("[[[x, y, z], [x, y, z]]"));
+              AllOf(HasSubstr("robot.toml:2: robot.body"), HasSubstr("two corners")));
+  EXPECT_THAT(error_of("[robot]\nbody = [[[0, 0, 0]]]\n"), HasSubstr("[[x, y, z], [x, y, z]]"));
   EXPECT_THAT(error_of("[robot]\nbody = [[[0, 0, 0], [1, 0, 1]]]\n"), HasSubstr("without inside"));
   EXPECT_THAT(error_of("[lidar]\n\nprot = 2368\n"),
               AllOf(HasSubstr("robot.toml:3"),
@@ -226,8 +226,8 @@ TEST(Settings, ShippedFilesAreTheDefaults) {
 TEST(Settings, AKeyOfAnotherMethodIsAnErrorThatSaysSo) {
   EXPECT_THAT(error_of("[detect.cloud]\nedge_threshold = 0.3\n"),
               HasSubstr(":2: detect.cloud.edge_threshold is read only with method = \"edges\""));
-  EXPECT_THAT(error_of("[detect.sweep]\nsaddle = 0.3\n"),
-              HasSubstr("detect.sweep.saddle is read only with cluster_method = \"regions\""));
+  EXPECT_THAT(error_of("[detect.cloud]\ncluster_method = \"euclidean\"\nsaddle = 0.3\n"),
+              HasSubstr("detect.cloud.saddle is read only with cluster_method = \"regions\""));
   EXPECT_THAT(error_of("[detect.sweep]\nsuppression_radius = 0.3\n"),
               HasSubstr("is read only with suppression = true"));
   EXPECT_THAT(error_of("[detect.map]\ncluster_method = \"supervoxel\"\n"),

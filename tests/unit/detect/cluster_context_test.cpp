@@ -28,9 +28,10 @@ PointCloud ground_with(Shape&& shape) {
 /// Features of the largest cluster.
 /// @param beams of each point
 Features features_of(PointView cloud, std::span<const BeamCount> beams = {}) {
+  DetectSettings settings = DetectSettings::for_cloud();
+  settings.surface.clustering = SurfaceClustering::euclidean;  // else grass and rock come apart
   Detector detector(
-      DetectSettings::for_cloud(),
-      {.points = 40'000, .candidates = 40'000, .ground_cells = 1 << 14, .obstacles = 16},
+      settings, {.points = 40'000, .candidates = 40'000, .ground_cells = 1 << 14, .obstacles = 16},
       Network());
   FixedVector<Obstacle> unused(16);
   StageTimer timer;

@@ -70,7 +70,7 @@ TEST_F(TrackerNetworkTest, AListThatMissesItDoesNotMakeItFlicker) {
   ASSERT_EQ(update({}).size(), 1U);
   ASSERT_EQ(update({at(3, 1)}, 3).size(), 1U);
   EXPECT_EQ(list_[0].id, id);
-  EXPECT_LE(updates_until(0, {}), 5) << "but it goes";
+  EXPECT_LE(updates_until(0, {}), 6) << "but it goes";
 }
 
 TEST_F(TrackerNetworkTest, AllocatesNothing) {

@@ -28,7 +28,7 @@ TEST_F(TrackerTest, AnObstacleAppearsOnceItWasSeenAgainAndStaysAsItWasFoundLast)
 }
 
 TEST_F(TrackerTest, WhatIsHardlyBelievedNeverAppears) {
-  EXPECT_EQ(updates_until(1, {at(3, 1, 0.25F)}), 100);
+  EXPECT_EQ(updates_until(1, {at(3, 1, 0.12F)}), 100);
 }
 
 TEST_F(TrackerTest, IdsStayWithTheirObstaclesWhateverTheOrder) {
@@ -144,7 +144,7 @@ TEST_F(TrackerTest, DoesNotFlicker) {
     was_sure = is_sure;
     if (is_listed) ids.insert(list_[0].id);
   }
-  EXPECT_GT(raw_changes, 100);
+  EXPECT_GT(raw_changes, 60);
   EXPECT_LT(changes, raw_changes / 5);
   EXPECT_EQ(ids.size(), 1U);
 }
