@@ -54,6 +54,7 @@ void add_gap(CLI::App& command, const char* name, const char* help, CLI::Option*
 
 std::vector<std::string> all_scenes() {
   std::vector<std::string> names;
+  names.reserve(kScenes.size());
   for (const Scene scene : kScenes) names.emplace_back(name_of(scene));
   return names;
 }
