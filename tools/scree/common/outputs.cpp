@@ -19,7 +19,9 @@ void Outputs::require_free(std::initializer_list<fs::path> files) const {
   std::error_code none;
   for (const fs::path& file : files) {
     if (file.empty() || file == "-") continue;
-    if (!force_ && (fs::is_regular_file(file, none) || fs::is_directory(file, none))) {
+    // An empty file or folder, as mktemp makes it, has nothing to lose.
+    const bool is_one = fs::is_regular_file(file, none) || fs::is_directory(file, none);
+    if (!force_ && is_one && !fs::is_empty(file, none)) {
       throw Failure(file.string() + " is there already" + kForce);
     }
     if (file.has_parent_path() && !fs::is_directory(file.parent_path(), none)) {
