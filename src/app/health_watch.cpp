@@ -94,17 +94,13 @@ bool HealthWatch::update_sensors(std::int64_t now_ns, const LidarStatus& lidar,
 /// @return whether there are others now
 bool HealthWatch::update_setup(const SetupReport& setup, health_t& health) {
   std::uint32_t named = 0;
-  std::vector<std::string> sentences;
-  for (const SetupFinding& finding : setup) {
-    // Boxes of the body, of which there may be several, have the bits from their fault's on.
-    std::uint32_t bit = 1U << static_cast<unsigned>(finding.fault);
-    while ((named & bit) != 0) bit <<= 1U;
-    named |= bit;
-    sentences.push_back(sentence(finding));
-    if ((named_faults_ & bit) == 0) add_line(true, sentences.back());
-  }
+  setup.for_each_slot([&](std::size_t slot, const SetupFinding&) { named |= 1U << slot; });
   if (named == named_faults_) return false;
-  health.setup = std::move(sentences);
+  health.setup.clear();
+  setup.for_each_slot([&](std::size_t slot, const SetupFinding& finding) {
+    health.setup.push_back(sentence(finding));
+    if ((named_faults_ >> slot & 1U) == 0) add_line(true, health.setup.back());
+  });
   health.setup_size = static_cast<std::int32_t>(health.setup.size());
   named_faults_ = named;
   return true;

@@ -81,7 +81,7 @@ private:
   LogLines log_;
   SensorWatch lidar_, imu_, encoder_;
   velodyne::Firmware logged_firmware_ = velodyne::Firmware::undecided;
-  std::uint32_t named_faults_ = 0;  // a bit for each SetupFault
+  std::uint32_t named_faults_ = 0;  // a bit for each slot of a SetupReport
   bool logs_sight_ = true;
   std::string logged_reason_;
   std::int64_t logged_at_ns_ = 0;

@@ -99,7 +99,7 @@ const ObstacleList& Pipeline::process(const Sweep& sweep) {
 void Pipeline::check_setup(const Sweep& sweep) {
   setup_->add(sweep, *sensors_);
   setup_report_ = setup_->report();
-  for (const BodyBox& box : std::as_const(*mapper_).own_returns().found()) {
+  for (const BodyBox& box : mapper_->own_returns().found()) {
     setup_report_.add({.fault = SetupFault::robot_body, .set = box.low, .high = box.high});
   }
   timer_.done(Stage::setup);

@@ -39,11 +39,10 @@ void Mapper::add(const Sweep& sweep, const SyncBuffer& sensors, StageTimer& time
   const bool has_known_attitude = filter_.has_known_attitude();
   const bool was_silent = has_known_attitude && !filter_.knows_attitude();
   filter_.predict(step_);
-  was_reset_ = filter_.has_known_attitude() && !has_known_attitude;
   deskew(sweep, lidar_, trajectory_, own_returns_, sweep_);
-  // Of what was mapped before, an own return has left a trail.
-  if (notice_own_returns()) was_reset_ = true;
-  // ... or it is tilted as the robot stood.
+  const bool was_tilted = filter_.has_known_attitude() && !has_known_attitude;
+  const bool has_trail = notice_own_returns();
+  was_reset_ = was_tilted || has_trail;
   if (was_reset_) {
     surfels_.clear();
     map_.clear();

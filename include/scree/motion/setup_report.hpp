@@ -50,6 +50,16 @@ struct SetupReport {
     findings[count++] = finding;
     return true;
   }
+  /// Calls visit(slot, finding) for each: slots below kMostFindings, one for each fault, and for
+  /// boxes of the body those from their fault's on.
+  template <class Visit>
+  void for_each_slot(Visit&& visit) const {
+    std::size_t boxes = 0;
+    for (const SetupFinding& each : *this) {
+      const auto fault = static_cast<std::size_t>(each.fault);
+      visit(each.fault == SetupFault::robot_body ? fault + boxes++ : fault, each);
+    }
+  }
   bool is_grave() const { return count > 0 && findings[0].is_grave; }
 };
 

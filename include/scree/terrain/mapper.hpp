@@ -44,13 +44,13 @@ public:
   bool remove_left(const Obstacle& obstacle) { return map_.remove_left(obstacle); }
   const MotionStep& step() const { return step_; }
   const Registration::Outcome& registration() const { return outcome_; }
-  /// Whether the map began anew with the last sweep, because its frame was found wrong.
+  /// Whether the map began anew with the last sweep, because its frame was found wrong or
+  /// the robot's own returns have left a trail in it.
   bool was_reset() const { return was_reset_; }
   /// Sweeps during which the wheel slipped.
   std::uint64_t slips() const { return slips_; }
   /// What moves in the last sweep.
   const MovingPoints& moving() const { return moving_; }
-  const OwnReturns& own_returns() const { return own_returns_; }
   OwnReturns& own_returns() { return own_returns_; }
   /// The last sweep in `base` at its end.
   const DeskewedSweep& sweep() const { return sweep_; }

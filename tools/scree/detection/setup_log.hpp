@@ -13,7 +13,8 @@ namespace scree::cli {
 class SetupLog {
 public:
   void add(const SetupReport& report) {
-    for (const SetupFinding& each : report) found_[static_cast<std::size_t>(each.fault)] = each;
+    report.for_each_slot(
+        [this](std::size_t slot, const SetupFinding& each) { found_[slot] = each; });
   }
   std::vector<std::string> sentences() const {
     std::vector<std::string> sentences;
@@ -24,7 +25,7 @@ public:
   }
 
 private:
-  std::array<std::optional<SetupFinding>, kSetupFaults> found_;
+  std::array<std::optional<SetupFinding>, kMostFindings> found_;
 };
 
 }  // namespace scree::cli

@@ -6,17 +6,10 @@
 
 #include "read/lidar_file.hpp"
 #include "scree/core/nanoseconds.hpp"
+#include "scree/drivers/velodyne/data_packet.hpp"
 
 namespace scree::cli {
 namespace {
-
-/// The device's time in a data packet, since the full hour (manual, data packet: four bytes before
-/// the factory bytes, microseconds).
-std::int64_t device_time_ns(velodyne::Bytes packet) {
-  std::int64_t microseconds = 0;
-  for (std::size_t i = 4; i-- > 0;) microseconds = microseconds << 8 | packet[1200 + i];
-  return microseconds * 1000;
-}
 
 /// Watches the packets of a lidar for a jump of the host's clock against the device's.
 class StepFinder {
@@ -51,8 +44,7 @@ private:
   };
 
   static std::int64_t wrapped(std::int64_t elapsed_ns) {
-    constexpr std::int64_t kHour = 3600 * kSecond;
-    return (elapsed_ns % kHour + kHour) % kHour;
+    return (elapsed_ns % velodyne::kHourNs + velodyne::kHourNs) % velodyne::kHourNs;
   }
   void notice(std::int64_t by_ns, std::int64_t elapsed_ns) {
     if (std::abs(by_ns) >= kLeastJump) jump_ = {{last_->arrival_ns, by_ns}, elapsed_ns};
@@ -85,7 +77,7 @@ HostSteps find_host_steps(const std::filesystem::path& capture, const LidarSetti
     if (datagram.payload.size() != velodyne::kDataPacketSize) continue;
     if (!sender) sender = datagram.source;
     if (*sender != datagram.source) continue;
-    finder.add(datagram.arrival_ns, device_time_ns(datagram.payload));
+    finder.add(datagram.arrival_ns, std::int64_t{velodyne::timestamp_us(datagram.payload)} * 1000);
   }
   return finder.take();
 }
