@@ -20,13 +20,13 @@ class ExamplesTest(LiveDaemonTest):
         """What each example says, line by line."""
         flags = self.done("pkg-config", "--cflags", "--libs", "lcm").stdout.split()
         types = os.path.join(BUILD, "src/publish/lcmtypes")
-        self.done("g++", "-std=c++17", "-Wall", "-Wextra", "-Werror", f"{SOURCE}/examples/planner.cpp",
+        self.done("g++", "-std=c++17", "-Wall", "-Wextra", "-Werror", f"{SOURCE}/tools/examples/planner.cpp",
                   "-o", self.path("planner"), f"-I{types}", *flags)  # fmt: skip
         commands = {"C++": [self.path("planner"), self.url]}
         try:
             import lcm  # noqa: F401
 
-            commands["Python"] = [sys.executable, f"{SOURCE}/examples/planner.py", self.url]
+            commands["Python"] = [sys.executable, f"{SOURCE}/tools/examples/planner.py", self.url]
         except ImportError:
             print("the example in Python was not run: there is no module lcm")
         environment = {**os.environ, "PYTHONPATH": PYTHON_TYPES}

@@ -1,5 +1,5 @@
 // The bridge's conversion with stand-ins for the types of ROS 2, which have the same members.
-#include "ros2/conversion.hpp"
+#include "examples/ros2/conversion.hpp"
 
 #include <gtest/gtest.h>
 
