@@ -50,8 +50,7 @@ Result<Pipeline> Pipeline::make(const Settings& settings,
 }
 
 Pipeline::Pipeline(const Settings& settings, const Networks& networks)
-    : lidar_(settings.lidar),
-      sensors_(std::make_unique<SyncBuffer>()),
+    : sensors_(std::make_unique<SyncBuffer>()),
       mapper_(std::make_unique<Mapper>(settings)),
       setup_(std::make_unique<SetupProbe>(settings)),
       map_detector_(settings.detect_map, settings.memory.for_map(), networks.map),
@@ -62,7 +61,6 @@ Pipeline::Pipeline(const Settings& settings, const Networks& networks)
       moving_tracker_(static_cast<std::size_t>(settings.memory.obstacles)),
       moving_boxes_(static_cast<std::size_t>(settings.memory.sweep_points),
                     static_cast<std::size_t>(settings.memory.obstacles)),
-      sweep_(static_cast<std::size_t>(settings.memory.sweep_points)),
       found_(static_cast<std::size_t>(settings.memory.obstacles)),
       list_(static_cast<std::size_t>(settings.memory.obstacles)) {
   if (!settings.lcm.grid || map_detector_.surface_method() == nullptr) return;
@@ -155,13 +153,12 @@ float Pipeline::ground_at(const Eigen::Vector3d& place) const {
 }
 
 void Pipeline::detect_in_sweep(const Sweep& sweep) {
-  OwnReturns& own = mapper_->own_returns();
-  deskew(sweep, lidar_, still_, own, sweep_);
-  own.end_sweep(0);
+  mapper_->take_still(sweep);
   timer_.done(Stage::motion);
+  const DeskewedSweep& still = mapper_->sweep();
   sweep_detector_.detect(
-      {.points = sweep_.points, .origins = sweep_.origins, .robot = Eigen::Vector2f::Zero()},
-      found_, timer_);
+      {.points = still.points, .origins = still.origins, .robot = Eigen::Vector2f::Zero()}, found_,
+      timer_);
   sweep_tracker_.update(
       list_.stamp_ns, Eigen::Vector3d::Zero(), {found_.data(), found_.size()},
       [](const Eigen::Vector3d&) { return Occupancy::unknown; }, list_.obstacles);
@@ -170,7 +167,7 @@ void Pipeline::detect_in_sweep(const Sweep& sweep) {
 
 StageCounts Pipeline::counts() const {
   StageCounts counts = detector().counts();
-  const std::size_t dropped = uses_map_ ? mapper_->sweep().dropped : sweep_.dropped;
+  const std::size_t dropped = mapper_->sweep().dropped;
   counts.input += dropped;
   counts.dropped += dropped;
   return counts;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "scree/detect/label.hpp"
+#include "scree/detect/multiversion.hpp"
 #include "scree/detect/neighbours.hpp"
 #include "scree/detect/union_find.hpp"
 
@@ -13,6 +14,44 @@ namespace {
 
 constexpr float kSolidBeams = 4;  // stopped: fewer may be chance
 constexpr float kHanging = 1.3F;  // metres: a crown of leaves begins there, tables end below
+
+/// A row of a raster of bodies before and after it grows by a cell.
+struct GrowingRow {
+  const std::uint8_t* state;  ///< unseen is 0
+  const float* top;
+  std::uint8_t* grown;
+  float* grown_top;
+};
+
+/// Gives each unseen cell of a row the greatest of its neighbours' states and of the shares of
+/// their tops.
+/// @param columns of the raster; the first and the last are left out
+template <bool kDiagonally>
+SCREE_MULTIVERSION void grow_row(const GrowingRow& row, std::ptrdiff_t columns, float share) {
+  const std::uint8_t* __restrict const state = row.state;
+  const float* __restrict const top = row.top;
+  std::uint8_t* __restrict const grown = row.grown;
+  float* __restrict const grown_top = row.grown_top;
+  for (std::ptrdiff_t i = 1; i + 1 < columns; ++i) {
+    std::uint8_t greatest = std::max(std::max(state[i - 1], state[i + 1]),
+                                     std::max(state[i - columns], state[i + columns]));
+    if constexpr (kDiagonally) {
+      greatest =
+          std::max(greatest, std::max(std::max(state[i - columns - 1], state[i - columns + 1]),
+                                      std::max(state[i + columns - 1], state[i + columns + 1])));
+    }
+    grown[i] = state[i] == 0 ? greatest : state[i];
+  }
+  for (std::ptrdiff_t i = 1; i + 1 < columns; ++i) {
+    float highest =
+        std::max(std::max(top[i - 1], top[i + 1]), std::max(top[i - columns], top[i + columns]));
+    if constexpr (kDiagonally) {
+      highest = std::max(highest, std::max(std::max(top[i - columns - 1], top[i - columns + 1]),
+                                           std::max(top[i + columns - 1], top[i + columns + 1])));
+    }
+    grown_top[i] = state[i] == 0 ? std::max(top[i], share * highest) : top[i];
+  }
+}
 
 }  // namespace
 
@@ -74,14 +113,14 @@ void BodyRegions::grow(bool diagonally, float share) {
   grown_top_.resize(state_.size());
   std::ranges::copy(state_, grown_.begin());
   std::ranges::copy(top_, grown_top_.begin());
-  for (std::size_t row = columns_; row + columns_ < state_.size(); row += columns_) {
-    for (std::size_t cell = row + 1; cell + 1 < row + columns_; ++cell) {
-      if (state_[cell] != unseen) continue;
-      const auto around = neighbours(cell, columns_);
-      for (const std::size_t other : std::span(around).first(diagonally ? around.size() : kSides)) {
-        grown_[cell] = std::max(grown_[cell], state_[other]);
-        grown_top_[cell] = std::max(grown_top_[cell], share * top_[other]);
-      }
+  const auto columns = static_cast<std::ptrdiff_t>(columns_);
+  for (std::size_t first = columns_; first + columns_ < state_.size(); first += columns_) {
+    const GrowingRow row{state_.data() + first, top_.data() + first, grown_.data() + first,
+                         grown_top_.data() + first};
+    if (diagonally) {
+      grow_row<true>(row, columns, share);
+    } else {
+      grow_row<false>(row, columns, share);
     }
   }
   std::swap(state_, grown_);

@@ -9,8 +9,8 @@
 
 namespace scree {
 
-Clusters::Clusters(std::size_t max_points)
-    : clusters_(max_points + kMostParts), members_(max_points), place_(max_points) {}
+Clusters::Clusters(std::size_t max_points, std::size_t least_size)
+    : clusters_(max_points / least_size + kMostParts), members_(max_points), place_(max_points) {}
 
 void Clusters::gather(const CandidatePoints& edges, std::span<const std::uint32_t> labels,
                       std::span<const std::uint32_t> sizes, std::uint32_t min_size) {

@@ -55,7 +55,10 @@ void Detector::take_in(PointView cloud) {
   counts_.dropped = intake.dropped;
   counts_.refused = intake.refused;
   counts_.voxels = points_.size();
-  if (clearance_ > 0) overhangs_.remove(points_, clearance_);
+  if (clearance_ > 0) {
+    std::visit([this](auto& method) { overhangs_.remove(points_, clearance_, method.cells()); },
+               method_);
+  }
   counts_.below_clearance = points_.size();
 }
 

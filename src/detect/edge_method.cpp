@@ -38,7 +38,7 @@ EdgeMethod::EdgeMethod(const EdgeSettings& settings, const DetectorLimits& limit
       edge_cells_(suppression_ ? limits.candidates : 0),
       euclidean_(limits.candidates),
       labels_(limits.candidates),
-      clusters_(limits.candidates),
+      clusters_(limits.candidates, static_cast<std::size_t>(settings.min_cluster_size)),
       ground_(static_cast<float>(settings.ground_inner), static_cast<float>(settings.ground_outer),
               limits.points),
       sectors_(limits.points) {

@@ -1,5 +1,6 @@
 #include "scree/detect/elevation_gradient.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "scree/detect/multiversion.hpp"
@@ -98,12 +99,17 @@ void ElevationGradient::compute(const PlaneCells& cells, std::span<const std::ui
   const PointCloud& points = cells.points();
   const float shared = shared_within * shared_within;
   const auto is_wanted = [&](std::uint32_t i) { return wanted.empty() || wanted[i] != 0; };
-  cells.for_each_cell([&](Run cell, std::span<const Run> neighbourhood) {
+  std::ranges::fill(slope_x, kUnknown);
+  std::ranges::fill(slope_y, kUnknown);
+  const auto has_wanted = [&](Run cell) {
     for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
-      if (!is_wanted(i)) {
-        slope_x[i] = slope_y[i] = kUnknown;
-        continue;
-      }
+      if (is_wanted(i)) return true;
+    }
+    return false;
+  };
+  cells.for_each_cell(has_wanted, [&](Run cell, std::span<const Run> neighbourhood) {
+    for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
+      if (!is_wanted(i)) continue;
       // A slope depends on the place in the plane alone, so a column of points has one.
       std::uint32_t same = shared > 0 ? cell.begin : i;
       const auto is_near = [&](std::uint32_t j) {

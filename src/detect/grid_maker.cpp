@@ -58,32 +58,38 @@ void GridMaker::lay_out(const ObstacleList& list) {
 }
 
 void GridMaker::look_at_ground(const GroundSurface& surface, const Pose& surface_in_odom) {
-  const Pose odom_in_surface = surface_in_odom.inverse();
+  // Places at the robot's height, from the plane of odom to the surface's.
+  const Eigen::Isometry3d odom_in_surface = surface_in_odom.inverse().isometry();
+  const Eigen::Matrix2d turn = odom_in_surface.linear().topLeftCorner<2, 2>();
+  const Eigen::Vector2d shift =
+      (odom_in_surface * Eigen::Vector3d(0, 0, grid_.pose.translation.z())).head<2>();
   for (std::size_t row = 0; row < grid_.rows; ++row) {
     for (std::size_t column = 0; column < grid_.columns; ++column) {
       grid_.state[row * grid_.columns + column] =
-          state_of(surface, odom_in_surface, grid_.middle(column, row));
+          state_of(surface, turn, turn * grid_.middle(column, row) + shift);
     }
   }
 }
 
 /// From places spread over the cell, no farther apart than the cells of the surface, so that each
 /// of these that lies in it is asked.
-CellState GridMaker::state_of(const GroundSurface& surface, const Pose& odom_in_surface,
+/// @param turn of the grid in the surface's plane
+/// @param middle of the cell, there
+CellState GridMaker::state_of(const GroundSurface& surface, const Eigen::Matrix2d& turn,
                               const Eigen::Vector2d& middle) const {
   const auto surface_cell = static_cast<double>(surface.cell_size());
   // Ground seen somewhere in so wide a cell says too little of the parts of it.
   if (surface_cell > grid_.cell_size) return CellState::unknown;
   const auto places = static_cast<int>(std::ceil(grid_.cell_size / surface_cell));
-  const double step = grid_.cell_size / places;
+  const Eigen::Matrix2f step = (turn * (grid_.cell_size / places)).cast<float>();
+  const Eigen::Vector2f first =
+      middle.cast<float>() -
+      step * Eigen::Vector2f::Constant(0.5F * static_cast<float>(places - 1));
   int seen = 0;
   for (int v = 0; v < places; ++v) {
     for (int u = 0; u < places; ++u) {
-      const Eigen::Vector2d aside =
-          step * Eigen::Vector2d(u - 0.5 * (places - 1), v - 0.5 * (places - 1));
-      const Eigen::Vector3d in_odom(middle.x() + aside.x(), middle.y() + aside.y(),
-                                    grid_.pose.translation.z());
-      const Eigen::Vector2f place = (odom_in_surface * in_odom).head<2>().cast<float>();
+      const Eigen::Vector2f place =
+          first + static_cast<float>(u) * step.col(0) + static_cast<float>(v) * step.col(1);
       if (!surface.covers(place.x(), place.y())) continue;
       const std::size_t cell = surface.cell_at(place.x(), place.y());
       if (surface.points_in(cell) == 0) continue;
@@ -129,7 +135,7 @@ void GridMaker::cover(const ConvexPolygon& outline, CellState state) {
 
 void GridMaker::measure_ground(const GroundSurface& surface, const Pose& surface_in_odom) {
   constexpr double kMost = std::numeric_limits<std::int16_t>::max();
-  const Pose odom_in_surface = surface_in_odom.inverse();
+  const Eigen::Isometry3d to_odom = surface_in_odom.isometry(), odom_in_surface = to_odom.inverse();
   const double robot_z = grid_.pose.translation.z();
   for (std::size_t row = 0; row < grid_.rows; ++row) {
     for (std::size_t column = 0; column < grid_.columns; ++column) {
@@ -140,7 +146,7 @@ void GridMaker::measure_ground(const GroundSurface& surface, const Pose& surface
       Eigen::Vector3d place = odom_in_surface * Eigen::Vector3d(middle.x(), middle.y(), robot_z);
       place.z() = static_cast<double>(
           surface.height(static_cast<float>(place.x()), static_cast<float>(place.y())));
-      const double above = 100 * ((surface_in_odom * place).z() - robot_z);
+      const double above = 100 * ((to_odom * place).z() - robot_z);
       grid_.ground[cell] = static_cast<std::int16_t>(std::lround(std::clamp(above, -kMost, kMost)));
     }
   }

@@ -34,7 +34,8 @@ GroundEdges::GroundEdges(std::size_t max_cells)
       order_(max_cells),
       values_(max_cells),
       places_(max_cells),
-      edges_(max_cells / 16 + 1) {}
+      edges_(max_cells / 16 + 1),
+      row_sums_(max_cells + max_cells / 4) {}
 
 void GroundEdges::find(const GroundSurface& surface, const HoleEvidence& beams) {
   surface_ = &surface;
@@ -44,6 +45,7 @@ void GroundEdges::find(const GroundSurface& surface, const HoleEvidence& beams) 
   ground_.assign(cells, 0);
   is_seen_.assign(cells, 0);
   is_taken_.assign(cells, 0);
+  sum_rows();
   for (std::size_t row = 1; row + 1 < surface.rows(); ++row) {
     for (std::size_t column = 1; column + 1 < columns; ++column) {
       const std::size_t cell = row * columns + column;
@@ -83,47 +85,71 @@ void GroundEdges::look_around(std::size_t cell) {
   }
 }
 
+/// Sums up each row of the raster, so that the sums over any stretch of it are at hand.
+void GroundEdges::sum_rows() {
+  const std::size_t columns = surface_->columns(), rows = surface_->rows();
+  row_sums_.resize((columns + 1) * rows);
+  RowSums* out = row_sums_.data();
+  for (std::size_t row = 0; row < rows; ++row) {
+    RowSums sums;
+    *out++ = sums;
+    for (std::size_t column = 0; column < columns; ++column) {
+      const std::size_t cell = row * columns + column;
+      if (surface_->is_ground(cell)) {
+        const auto x = static_cast<double>(column), z = static_cast<double>(surface_->seen(cell));
+        ++sums.cells;
+        sums.x += x;
+        sums.xx += x * x;
+        sums.z += z;
+        sums.xz += x * z;
+      }
+      *out++ = sums;
+    }
+  }
+}
+
 /// Lays a plane through the ground around a cell. False where too little of it is known.
 bool GroundEdges::fit(std::size_t cell, Plane& plane) const {
   constexpr float kReach = 0.6F;  // metres
-  constexpr float kFewest = 8;
-  const auto reach = static_cast<std::ptrdiff_t>(kReach / surface_->cell_size());
-  const auto columns = static_cast<std::ptrdiff_t>(surface_->columns());
-  const auto row = static_cast<std::ptrdiff_t>(cell) / columns;
-  const auto column = static_cast<std::ptrdiff_t>(cell) % columns;
-  const auto last_row = static_cast<std::ptrdiff_t>(surface_->rows()) - 1 - row;
-  float count = 0, x = 0, y = 0, z = 0, xx = 0, xy = 0, yy = 0, xz = 0, yz = 0;
-  for (std::ptrdiff_t v = std::max(-reach, -row); v <= std::min(reach, last_row); ++v) {
-    for (std::ptrdiff_t u = std::max(-reach, -column); u <= std::min(reach, columns - 1 - column);
-         ++u) {
-      const std::size_t other = cell + static_cast<std::size_t>(v * columns + u);
-      if (!surface_->is_ground(other)) continue;
-      const auto px = static_cast<float>(u), py = static_cast<float>(v);
-      const float height = surface_->seen(other);
-      ++count;
-      x += px;
-      y += py;
-      z += height;
-      xx += px * px;
-      xy += px * py;
-      yy += py * py;
-      xz += px * height;
-      yz += py * height;
-    }
+  constexpr double kFewest = 8;
+  const auto reach = static_cast<std::size_t>(kReach / surface_->cell_size());
+  const std::size_t columns = surface_->columns();
+  const std::size_t row = cell / columns, column = cell % columns;
+  const std::size_t left = column - std::min(column, reach);
+  const std::size_t right = std::min(column + reach + 1, columns);
+  const auto middle = static_cast<double>(column);
+  double count = 0, x = 0, y = 0, z = 0, xx = 0, xy = 0, yy = 0, xz = 0, yz = 0;
+  for (std::size_t v = row - std::min(row, reach); v <= std::min(row + reach, surface_->rows() - 1);
+       ++v) {
+    const RowSums* const sums = row_sums_.data() + v * (columns + 1);
+    const RowSums in_row = sums[right] - sums[left];
+    const double py = static_cast<double>(v) - static_cast<double>(row);
+    const double px = in_row.x - middle * in_row.cells;
+    count += in_row.cells;
+    x += px;
+    y += py * in_row.cells;
+    z += in_row.z;
+    xx += in_row.xx - middle * (in_row.x + px);
+    xy += py * px;
+    yy += py * py * in_row.cells;
+    xz += in_row.xz - middle * in_row.z;
+    yz += py * in_row.z;
   }
-  plane.cells = count;
+  plane.cells = static_cast<float>(count);
   if (count < kFewest) return false;
   // A ridge keeps the slope small across a single ring of the lidar, where nothing tells it.
-  const float ridge = 2 * count;
+  const double ridge = 2 * count;
   xx += ridge - x * x / count;
   yy += ridge - y * y / count;
   xy -= x * y / count;
   xz -= x * z / count;
   yz -= y * z / count;
-  const float determinant = xx * yy - xy * xy;
-  plane.rise_x = (xz * yy - yz * xy) / determinant;
-  plane.rise_y = (yz * xx - xz * xy) / determinant;
-  plane.height = (z - plane.rise_x * x - plane.rise_y * y) / count;
+  const double determinant = xx * yy - xy * xy;
+  const double rise_x = (xz * yy - yz * xy) / determinant;
+  const double rise_y = (yz * xx - xz * xy) / determinant;
+  plane.rise_x = static_cast<float>(rise_x);
+  plane.rise_y = static_cast<float>(rise_y);
+  plane.height = static_cast<float>((z - rise_x * x - rise_y * y) / count);
   return true;
 }
 

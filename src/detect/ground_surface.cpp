@@ -33,7 +33,8 @@ GroundSurface::GroundSurface(std::size_t max_points, std::size_t max_cells)
       fill_(max_cells),
       depressions_(max_cells) {}
 
-void GroundSurface::build(PointView points, const GroundSurfaceSettings& settings) {
+void GroundSurface::build(PointView points, const GroundSurfaceSettings& settings,
+                          Accuracy accuracy) {
   // Cells too small for the density of the points leave the ground in tatters.
   constexpr float kGrowth = 1.25F;
   constexpr int kMostGrowths = 8;  // up to six times the size
@@ -42,7 +43,7 @@ void GroundSurface::build(PointView points, const GroundSurfaceSettings& setting
     lay_out(points, cell_size);
     if (gather(points) >= settings.cell_points || growth == kMostGrowths) break;
   }
-  find_ground(settings);
+  find_ground(settings, accuracy);
 }
 
 void GroundSurface::build_below(std::span<const std::uint8_t> loose,
@@ -51,10 +52,10 @@ void GroundSurface::build_below(std::span<const std::uint8_t> loose,
   for (std::size_t cell = 0; cell < seen_.size(); ++cell) {
     if (loose[cell] != 0) seen_[cell] = height_in(cell, kLow);
   }
-  find_ground(settings);
+  find_ground(settings, Accuracy::full);
 }
 
-void GroundSurface::find_ground(const GroundSurfaceSettings& settings) {
+void GroundSurface::find_ground(const GroundSurfaceSettings& settings, Accuracy accuracy) {
   depressions_.clear();
   find_smooth_cells(settings.max_slope);
   const bool has_trend = settings.trend_reach > 0;
@@ -63,14 +64,15 @@ void GroundSurface::find_ground(const GroundSurfaceSettings& settings) {
   if (!has_trend) join_windows();
   if (has_trend) {
     trend_.fit(columns_, rows_, ground_.data(), seen_.data(), cell_, settings.trend_reach);
-    add_trend(-1, {&seen_});
+    trend_.add_to(seen_.data(), -1);  // from now on heights are above the trend
     join_trend(settings.tolerance);
   }
-  join_patches(settings.tolerance);
+  join_patches(settings.tolerance, accuracy);
   if (has_trend) {
-    add_trend(1, {&seen_, &smooth_});
+    trend_.add_to(seen_.data(), 1);
+    trend_.add_to(smooth_.data(), 1);
   } else if (depressions_.remove({columns_, rows_, cell_, smooth_.data()}, ground_)) {
-    span();
+    span(RasterFill::kSteps);
   }
 }
 
@@ -93,14 +95,6 @@ void GroundSurface::lay_out(PointView points, float cell_size) {
   inverse_ = 1 / cell_;
   low_x_ -= static_cast<float>(kBorder) * cell_;
   low_y_ -= static_cast<float>(kBorder) * cell_;
-}
-
-std::size_t GroundSurface::cell_at(float x, float y) const {
-  const auto index = [](float value, std::size_t count) {
-    return static_cast<std::size_t>(std::clamp(value, 0.0F, static_cast<float>(count - 1)));
-  };
-  return index((y - low_y_) * inverse_, rows_) * columns_ +
-         index((x - low_x_) * inverse_, columns_);
 }
 
 float GroundSurface::gather(PointView points) {
@@ -246,17 +240,6 @@ void GroundSurface::find_patches(float max_slope) {
   }
 }
 
-/// Moves heights from above the trend to above zero (1), or back (-1).
-void GroundSurface::add_trend(float sign,
-                              std::initializer_list<FixedVector<float>*> rasters) const {
-  for (std::size_t row = 0; row < rows_; ++row) {
-    for (std::size_t column = 0; column < columns_; ++column) {
-      const float trend = sign * trend_.at(column, row);
-      for (FixedVector<float>* raster : rasters) (*raster)[row * columns_ + column] += trend;
-    }
-  }
-}
-
 /// Makes ground of the patches that lie on the trend. A lidar's rings make many small patches, and
 /// the largest of them need not be ground.
 void GroundSurface::join_trend(float tolerance) {
@@ -270,19 +253,17 @@ void GroundSurface::join_trend(float tolerance) {
   }
 }
 
-void GroundSurface::join_patches(float tolerance) {
-  constexpr int kRounds = 3;  // patches that join let others join, which is soon at an end
+void GroundSurface::join_patches(float tolerance, Accuracy accuracy) {
+  // Patches that join let others join, which is soon at an end.
+  const int rounds = accuracy == Accuracy::full ? 3 : 1;
   const std::size_t cells = columns_ * rows_;
   smooth_.resize(cells);
   if (!patches_.empty()) {
     std::ranges::max_element(patches_, {}, &Patch::cells)->is_ground = true;
   }
-  for (int round = 0;; ++round) {
-    for (std::size_t cell = 0; cell < cells; ++cell) {
-      ground_[cell] = patch_[cell] != kNoLabel && patches_[patch_[cell]].is_ground ? 1 : 0;
-    }
-    span();
-    if (round == kRounds) return;
+  mark_ground();
+  for (int round = 0; round < rounds; ++round) {
+    span(RasterFill::kRoughSteps);
     for (Patch& patch : patches_) patch.residual = 0;
     for (std::size_t cell = 0; cell < cells; ++cell) {
       if (patch_[cell] == kNoLabel) continue;
@@ -294,32 +275,24 @@ void GroundSurface::join_patches(float tolerance) {
       patch.is_ground = std::abs(patch.residual) <= tolerance * static_cast<float>(patch.cells);
       joined |= patch.is_ground;
     }
-    if (!joined) return;
+    if (!joined) break;
+    mark_ground();
+  }
+  span(accuracy == Accuracy::full ? RasterFill::kSteps : RasterFill::kRoughSteps);
+}
+
+void GroundSurface::mark_ground() {
+  for (std::size_t cell = 0; cell < ground_.size(); ++cell) {
+    ground_[cell] = patch_[cell] != kNoLabel && patches_[patch_[cell]].is_ground ? 1 : 0;
   }
 }
 
 /// Spans the surface from the ground.
-void GroundSurface::span() {
+void GroundSurface::span(int steps) {
   for (std::size_t cell = 0; cell < ground_.size(); ++cell) {
     if (ground_[cell] != 0) smooth_[cell] = blurred(cell);
   }
-  fill_.fill(columns_, rows_, ground_.data(), smooth_.data());
-}
-
-float GroundSurface::height(float x, float y) const {
-  const auto split = [](float value, std::size_t count, float& share) {
-    const float inside = std::clamp(value - 0.5F, 0.0F, static_cast<float>(count) - 1.001F);
-    const auto index = static_cast<std::size_t>(inside);
-    share = inside - static_cast<float>(index);
-    return index;
-  };
-  float u = 0, v = 0;
-  const std::size_t column = split((x - low_x_) * inverse_, columns_, u);
-  const std::size_t row = split((y - low_y_) * inverse_, rows_, v);
-  const float* const at = smooth_.data() + row * columns_ + column;
-  const float near = at[0] + u * (at[1] - at[0]);
-  const float far = at[columns_] + u * (at[columns_ + 1] - at[columns_]);
-  return near + v * (far - near);
+  fill_.fill(columns_, rows_, ground_.data(), smooth_.data(), steps);
 }
 
 }  // namespace scree

@@ -22,13 +22,30 @@ float robust(float distance, float scale) {
   return inlier * inlier;
 }
 
+std::size_t gap(std::size_t a, std::size_t b) {
+  return a > b ? a - b : b - a;
+}
+
+}  // namespace
+
+void GroundTrend::RowMoments::add(float at, float residual, float counts) {
+  weight += counts;
+  x += counts * at;
+  xx += counts * at * at;
+  z += counts * residual;
+  xz += counts * at * residual;
+}
+
 /// A plane in blocks and metres, by weighted least squares.
-class Plane {
+class GroundTrend::Plane {
 public:
-  void add(float x, float y, float z, float weight) {
-    const Eigen::Vector3f row(1, x, y);
-    normal_ += weight * row * row.transpose();
-    right_ += weight * z * row;
+  void add(const RowMoments& row, float y, float weight) {
+    Eigen::Matrix3f moments;
+    moments << row.weight, row.x, y * row.weight,  //
+        row.x, row.xx, y * row.x,                  //
+        y * row.weight, y * row.x, y * y * row.weight;
+    normal_ += weight * moments;
+    right_ += weight * Eigen::Vector3f(row.z, row.xz, y * row.z);
   }
   /// Level, at height zero, where nothing speaks against it.
   Eigen::Vector3f solve() const {
@@ -43,10 +60,11 @@ private:
   Eigen::Vector3f right_ = Eigen::Vector3f::Zero();
 };
 
-}  // namespace
-
 GroundTrend::GroundTrend(std::size_t max_cells)
-    : blocks_(max_cells / 2 + 2), kernel_(kMostWindow + 1) {}
+    : blocks_(max_cells / 4 + 2),
+      moments_(blocks_.capacity()),
+      kernel_(kMostWindow + 1),
+      along_(2 * max_cells) {}
 
 void GroundTrend::fit(std::size_t columns, std::size_t rows, const std::uint8_t* known,
                       const float* heights, float cell_size, float reach) {
@@ -63,7 +81,10 @@ void GroundTrend::fit(std::size_t columns, std::size_t rows, const std::uint8_t*
 
 void GroundTrend::gather(std::size_t columns, std::size_t rows, const std::uint8_t* known,
                          const float* heights, float cell_size) {
+  along_.resize(2 * columns);
   side_ = std::max(static_cast<std::size_t>(std::lround(kBlock / cell_size)), kLeastSide);
+  cell_columns_ = columns;
+  cell_rows_ = rows;
   columns_ = (columns + side_ - 1) / side_;
   rows_ = (rows + side_ - 1) / side_;
   blocks_.assign(columns_ * rows_, {});
@@ -87,12 +108,13 @@ void GroundTrend::fit_whole() {
   for (const float scale : kScales) {
     Plane plane;
     for (std::size_t row = 0; row < rows_; ++row) {
+      RowMoments moments;
       for (std::size_t column = 0; column < columns_; ++column) {
         const Block& block = blocks_[row * columns_ + column];
-        if (block.weight == 0) continue;
-        plane.add(static_cast<float>(column), static_cast<float>(row), block.height,
-                  block.weight * robust(block.height - block.trend, scale));
+        moments.add(static_cast<float>(column), block.height,
+                    block.weight * robust(block.height - block.trend, scale));
       }
+      plane.add(moments, static_cast<float>(row), 1);
     }
     const Eigen::Vector3f fitted = plane.solve();
     for (std::size_t row = 0; row < rows_; ++row) {
@@ -115,10 +137,28 @@ void GroundTrend::weigh_by_distance(float reach) {
 }
 
 void GroundTrend::fit_around() {
+  sum_rows();
   for (std::size_t row = 0; row < rows_; ++row) {
     for (std::size_t column = 0; column < columns_; ++column) {
       Block& here = blocks_[row * columns_ + column];
       here.trend = here.plane + residual_at(column, row);
+    }
+  }
+}
+
+/// The weights are a product of one along a row and one across it, so the sums are taken in turn.
+void GroundTrend::sum_rows() {
+  const std::size_t window = kernel_.size() - 1;
+  moments_.resize(blocks_.size());
+  for (std::size_t row = 0; row < rows_; ++row) {
+    const Block* const blocks = blocks_.data() + row * columns_;
+    for (std::size_t column = 0; column < columns_; ++column) {
+      RowMoments& moments = moments_[row * columns_ + column] = {};
+      const std::size_t last = std::min(column + window, columns_ - 1);
+      for (std::size_t u = column - std::min(window, column); u <= last; ++u) {
+        moments.add(static_cast<float>(u) - static_cast<float>(column),
+                    blocks[u].height - blocks[u].plane, blocks[u].counts * kernel_[gap(u, column)]);
+      }
     }
   }
 }
@@ -128,37 +168,46 @@ void GroundTrend::fit_around() {
 float GroundTrend::residual_at(std::size_t column, std::size_t row) const {
   Plane plane;
   const std::size_t window = kernel_.size() - 1;
-  const auto away = [](std::size_t a, std::size_t b) { return a > b ? a - b : b - a; };
   for (std::size_t v = row - std::min(window, row); v <= std::min(row + window, rows_ - 1); ++v) {
-    for (std::size_t u = column - std::min(window, column);
-         u <= std::min(column + window, columns_ - 1); ++u) {
-      const Block& block = blocks_[v * columns_ + u];
-      if (block.counts == 0) continue;
-      plane.add(static_cast<float>(u) - static_cast<float>(column),
-                static_cast<float>(v) - static_cast<float>(row), block.height - block.plane,
-                block.counts * kernel_[away(u, column)] * kernel_[away(v, row)]);
-    }
+    plane.add(moments_[v * columns_ + column], static_cast<float>(v) - static_cast<float>(row),
+              kernel_[gap(v, row)]);
   }
   return plane.solve()[0];
 }
 
-float GroundTrend::at(std::size_t column, std::size_t row) const {
-  const auto split = [this](std::size_t cell, std::size_t count, float& share) {
-    const float place = (static_cast<float>(cell) + 0.5F) / static_cast<float>(side_) - 0.5F;
-    const float inside = std::clamp(place, 0.0F, static_cast<float>(count - 1));
-    const auto low = std::min(static_cast<std::size_t>(inside), count > 1 ? count - 2 : 0);
-    share = inside - static_cast<float>(low);
-    return low;
-  };
-  float u = 0, v = 0;
-  const std::size_t left = split(column, columns_, u), low = split(row, rows_, v);
-  const std::size_t right = std::min(left + 1, columns_ - 1), high = std::min(low + 1, rows_ - 1);
-  const auto trend = [this](std::size_t c, std::size_t r) {
-    return blocks_[r * columns_ + c].trend;
-  };
-  const float near = trend(left, low) + u * (trend(right, low) - trend(left, low));
-  const float far = trend(left, high) + u * (trend(right, high) - trend(left, high));
-  return near + v * (far - near);
+GroundTrend::Place GroundTrend::place_of(std::size_t cell, std::size_t count) const {
+  const float place = (static_cast<float>(cell) + 0.5F) / static_cast<float>(side_) - 0.5F;
+  const float inside = std::clamp(place, 0.0F, static_cast<float>(count - 1));
+  const auto low = std::min(static_cast<std::size_t>(inside), count > 1 ? count - 2 : 0);
+  return {low, std::min(low + 1, count - 1), inside - static_cast<float>(low)};
+}
+
+void GroundTrend::interpolate_row(std::size_t block_row, float* out) const {
+  const Block* const blocks = blocks_.data() + block_row * columns_;
+  for (std::size_t column = 0; column < cell_columns_; ++column) {
+    const Place place = place_of(column, columns_);
+    const float low = blocks[place.low].trend, high = blocks[place.high].trend;
+    out[column] = low + place.share * (high - low);
+  }
+}
+
+/// Bilinear between the middles of the blocks. Many rows of cells lie between the same two rows of
+/// blocks: along these the trend is interpolated once.
+void GroundTrend::add_to(float* heights, float factor) {
+  float* const near = along_.data();
+  float* const far = near + cell_columns_;
+  std::size_t last = rows_;
+  for (std::size_t row = 0; row < cell_rows_; ++row, heights += cell_columns_) {
+    const Place place = place_of(row, rows_);
+    if (place.low != last) {
+      interpolate_row(place.low, near);
+      interpolate_row(place.high, far);
+      last = place.low;
+    }
+    for (std::size_t column = 0; column < cell_columns_; ++column) {
+      heights[column] += factor * (near[column] + place.share * (far[column] - near[column]));
+    }
+  }
 }
 
 }  // namespace scree

@@ -5,12 +5,12 @@
 
 namespace scree {
 
-void Overhangs::remove(PointCloud& cloud, float clearance) {
+void Overhangs::remove(PointCloud& cloud, float clearance, PlaneCells& columns) {
   constexpr std::uint32_t kGroundRank = 2;  // from 0
-  columns_.build(cloud, kRadius);
-  const PointCloud& sorted = columns_.points();
+  columns.build(cloud, kRadius);
+  const PointCloud& sorted = columns.points();
   cloud.clear();
-  columns_.for_each_cell([&](Run column, std::span<const Run>) {
+  columns.for_each_cell([&](Run column, std::span<const Run>) {
     float ceiling = std::numeric_limits<float>::max();
     if (column.end - column.begin > kGroundRank) {
       heights_.clear();

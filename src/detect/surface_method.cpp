@@ -40,7 +40,7 @@ SurfaceMethod::SurfaceMethod(const SurfaceSettings& settings, double clearance,
       candidates_(limits.candidates),
       kept_(limits.candidates),
       euclidean_(limits.candidates),
-      clusters_(limits.candidates),
+      clusters_(limits.candidates, static_cast<std::size_t>(settings.min_cluster_size)),
       context_(limits.ground_cells),
       evidence_(limits.ground_cells),
       edges_(limits.ground_cells) {
@@ -85,12 +85,15 @@ ClusteredPoints SurfaceMethod::find(const PointCloud& points, const SeenCloud& c
 void SurfaceMethod::build_ground(const SeenCloud& cloud) {
   const GroundSurfaceSettings ground = ground_surface_of(settings_);
   const auto lowest = static_cast<float>(settings_.body_height);
-  surface_.build(sloped_.points(), ground);
-  beam_grid_.build(cloud.points, cloud.beams, surface_, lowest, highest_);
-  if (beam_grid_.has_loose()) {
-    surface_.build_below(beam_grid_.loose(), ground);
+  if (cloud.beams.empty()) {
+    surface_.build(sloped_.points(), ground);
+  } else {
+    // What is loose, a rough surface tells.
+    surface_.build(sloped_.points(), ground, GroundSurface::Accuracy::rough);
     beam_grid_.build(cloud.points, cloud.beams, surface_, lowest, highest_);
+    surface_.build_below(beam_grid_.loose(), ground);
   }
+  beam_grid_.build(cloud.points, cloud.beams, surface_, lowest, highest_);
   evidence_.build(cloud, surface_);
   edges_.find(surface_, evidence_);
   if (!cloud.beams.empty()) leave_out_ground_below_edges();

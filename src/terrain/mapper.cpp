@@ -65,6 +65,13 @@ void Mapper::add(const Sweep& sweep, const SyncBuffer& sensors, StageTimer& time
   timer.done(Stage::map);
 }
 
+void Mapper::take_still(const Sweep& sweep) {
+  trajectory_.start(SweepTrajectory::kLongestStepNs);
+  trajectory_.push_back({});
+  deskew(sweep, lidar_, trajectory_, own_returns_, sweep_);
+  own_returns_.end_sweep(0);
+}
+
 bool Mapper::notice_own_returns() {
   constexpr double kArm = 0.5;  // metres: as OwnReturns counts turns
   const bool is_known = step_.knows_distance && !slip_detector_.slips();

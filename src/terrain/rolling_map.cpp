@@ -4,20 +4,26 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <numeric>
 
-#include "scree/core/floor_to_cell.hpp"
+#include "scree/terrain/voxel_walk.hpp"
 
 namespace scree {
 namespace {
 
 /// After this many beams went through a voxel since its last hit, what was there has moved away.
-constexpr std::uint16_t kMaxMisses = 8;
+constexpr std::uint8_t kMaxMisses = 8;
 /// One beam in so many is traced, others each sweep.
 constexpr std::uint16_t kRayStride = 4;
 /// The mean of a voxel follows its points; beyond so many each new one counts as much.
-constexpr std::uint16_t kMaxHits = 40;
+constexpr std::uint8_t kMaxHits = 40;
 /// Beams that are remembered for having passed everything: those of about a second.
 constexpr std::size_t kPassingBeams = 16384;
+
+/// Wraps around in 13 years.
+std::uint32_t tenths(std::int64_t time_ns) {
+  return static_cast<std::uint32_t>(time_ns / 100'000'000);
+}
 
 }  // namespace
 
@@ -29,7 +35,9 @@ RollingMap::RollingMap(const MapSettings& settings, std::size_t max_voxels)
       cloud_(voxels_.capacity()),
       passing_(kPassingBeams),
       beams_(voxels_.capacity()),
-      origins_(voxels_.capacity()) {}
+      origins_(voxels_.capacity()),
+      places_(TileGrid::kSlots + 1),
+      chosen_(voxels_.capacity()) {}
 
 void RollingMap::clear() {
   voxels_.clear();
@@ -42,9 +50,7 @@ void RollingMap::clear() {
 }
 
 VoxelKey RollingMap::key_of(const Eigen::Vector3f& point) const {
-  return {static_cast<std::int16_t>(floor_to_cell(point.x() * inverse_)),
-          static_cast<std::int16_t>(floor_to_cell(point.y() * inverse_)),
-          static_cast<std::int16_t>(floor_to_cell(point.z() * inverse_))};
+  return VoxelKey::at(point * inverse_);
 }
 
 void RollingMap::add(const DeskewedSweep& sweep, const Pose& pose, std::int64_t end_ns,
@@ -59,9 +65,9 @@ void RollingMap::add(const DeskewedSweep& sweep, const Pose& pose, std::int64_t 
   add_points(sweep, rotation, translation, reach);
   trace_rays(sweep, rotation, translation, reach);
   add_passing_beams(sweep, rotation, translation);
-  prune(pose);
   robot_ = translation;
-  extract_cloud(translation);
+  prune();
+  extract_cloud();
 }
 
 /// Keeps floats small. The origin moves by a whole number of voxels, so that the raster of later
@@ -130,7 +136,7 @@ void RollingMap::add_hit(MapVoxel& voxel, const Eigen::Vector3f& point, const De
   voxel.reflectivity += share * (sweep.points.reflectivity[index] - voxel.reflectivity);
   if (voxel.last_sweep != sweep_ && voxel.sweeps < kMaxHits) ++voxel.sweeps;
   voxel.last_sweep = sweep_;
-  voxel.seen_ns = end_ns_;
+  voxel.seen_ds = tenths(end_ns_);
   voxel.misses = 0;
   ++voxel.beams.ended;
   voxel.beams.scatter += sweep.scatter[index];
@@ -169,19 +175,28 @@ void RollingMap::trace_ray(const Eigen::Vector3f& from, const Eigen::Vector3f& b
   for (float way = 0; way < std::min(end, search_reach); way += FreeSpace::kCell) {
     free_space_.add_misses(from + way * along + origin, sweep_, kRayStride);
   }
-  const MapVoxel* last = nullptr;
   const float grass_end = std::min(range - kGrassClear, reach);
-  for (float way = 0; way < grass_end; way += voxel_size) {
-    const VoxelKey key = key_of(from + way * along);
-    if (voxels_.is_block_empty(key)) continue;
+  const auto steps = static_cast<int>(std::ceil(grass_end * inverse_));
+  const VoxelWalk walk(from * inverse_, along);
+  const MapVoxel* last = nullptr;
+  for (int step = 0; step < steps; ++step) {
+    const Eigen::Vector3f at = walk.at(step);
+    const VoxelKey key = VoxelKey::at(at);
+    if (const int edge = voxels_.empty_edge(key); edge > 0) {
+      if (edge > 1) step += walk.steps_within(edge, key, at);
+      continue;
+    }
     MapVoxel* const voxel = voxels_.find(key);
-    if (voxel == nullptr || voxel == last) continue;
+    if (voxel == last) continue;
     last = voxel;
     const Eigen::Vector3f to_mean = voxel->mean - from;
     const Eigen::Vector3f aside = to_mean - to_mean.dot(along) * along;  // from the beam
     const float distance = aside.norm();
     if (distance < grass_radius && aside.z() > 0) voxel->beams.passed += 2 * kRayStride;
-    if (distance < miss_radius && way < end && voxel->last_sweep != sweep_) ++voxel->misses;
+    const bool is_clear = static_cast<float>(step) * voxel_size < end;
+    if (distance < miss_radius && is_clear && voxel->last_sweep != sweep_) {
+      voxel->misses = std::min<std::uint8_t>(voxel->misses + 1, kMaxMisses);
+    }
   }
 }
 
@@ -273,7 +288,7 @@ bool RollingMap::remove_left(const Obstacle& obstacle) {
   for (std::size_t i = voxels_.size(); i-- > 0;) {
     if (is_inside(voxels_[i].mean)) voxels_.erase(i);
   }
-  extract_cloud(robot_);
+  extract_cloud();
   return true;
 }
 
@@ -289,35 +304,55 @@ void RollingMap::fit_reach() {
 }
 
 /// Removes what is too far off, what has moved away, what is too old, what was never confirmed.
-void RollingMap::prune(const Pose& pose) {
+void RollingMap::prune() {
   constexpr std::uint32_t kConfirmWithin = 30;  // sweeps
-  const Eigen::Vector3f robot = (pose.translation - origin_).cast<float>();
   fit_reach();
   const float reach = reach_;
-  const auto kept_ns = static_cast<std::int64_t>(settings_.keep_seconds * 1e9);
+  const auto kept_ds = static_cast<std::int32_t>(settings_.keep_seconds * 10);
+  const std::uint32_t now_ds = tenths(end_ns_);
   for (std::size_t i = voxels_.size(); i-- > 0;) {
     MapVoxel& voxel = voxels_[i];
-    const bool is_far = (voxel.mean - robot).squaredNorm() > reach * reach;
+    const bool is_far = (voxel.mean - robot_).squaredNorm() > reach * reach;
     const bool has_moved = voxel.misses >= kMaxMisses;
     // From the future, too, when the clock was set back.
-    const bool is_old = std::abs(end_ns_ - voxel.seen_ns) > kept_ns;
+    const bool is_old = std::abs(static_cast<std::int32_t>(now_ds - voxel.seen_ds)) > kept_ds;
     const bool is_noise = sweep_ - voxel.last_sweep == kConfirmWithin && !confirm(voxel);
     if (is_far || has_moved || is_old || is_noise) voxels_.erase(i);
   }
 }
 
-void RollingMap::extract_cloud(const Eigen::Vector3f& robot) {
-  cloud_.clear();
-  beams_.clear();
-  origins_.clear();
+/// Takes the cloud out of the voxels, tile by tile of the plane, so that the stages that walk over
+/// it find what they need in the processor's cache.
+void RollingMap::extract_cloud() {
   const auto reach = static_cast<float>(settings_.search_reach);
-  for (MapVoxel& voxel : voxels_) {
-    const bool is_far = (voxel.mean - robot).squaredNorm() > reach * reach;
+  places_.assign(TileGrid::kSlots + 1, 0);
+  chosen_.clear();
+  for (std::uint32_t i = 0; i < voxels_.size(); ++i) {
+    MapVoxel& voxel = voxels_[i];
+    const bool is_far = (voxel.mean - robot_).squaredNorm() > reach * reach;
     if (is_far || is_dust(voxel) || !confirm(voxel)) continue;
-    cloud_.push_back(voxel.mean.x(), voxel.mean.y(), voxel.mean.z(), voxel.reflectivity);
-    beams_.push_back(voxel.beams);
-    origins_.push_back(voxel.seen_from);
+    const std::uint32_t tile = tile_of(voxel.key);
+    chosen_.push_back({i, tile});
+    ++places_[tile + 1];
   }
+  std::partial_sum(places_.begin(), places_.end(), places_.begin());
+  cloud_.resize(chosen_.size());
+  beams_.resize(chosen_.size());
+  origins_.resize(chosen_.size());
+  for (const Chosen& chosen : chosen_) {
+    const MapVoxel& voxel = voxels_[chosen.voxel];
+    const std::uint32_t place = places_[chosen.tile]++;
+    cloud_.x[place] = voxel.mean.x();
+    cloud_.y[place] = voxel.mean.y();
+    cloud_.z[place] = voxel.mean.z();
+    cloud_.reflectivity[place] = voxel.reflectivity;
+    beams_[place] = voxel.beams;
+    origins_[place] = voxel.seen_from;
+  }
+}
+
+std::uint32_t RollingMap::tile_of(const VoxelKey& key) {
+  return static_cast<std::uint32_t>(TileGrid::CellIndex{key.x >> 3, key.y >> 3, 0}.slot());
 }
 
 }  // namespace scree

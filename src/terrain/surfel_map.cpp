@@ -20,14 +20,16 @@ constexpr float kMinWidth = 0.12F;  // of the cell's edge
 
 }  // namespace
 
-SurfelMap::SurfelMap(float cell, int width, int height)
+SurfelMap::SurfelMap(float cell, int width, int height, std::size_t most)
     : cell_(cell),
       inverse_(1 / cell),
       width_(width),
       height_(height),
-      cells_(static_cast<std::size_t>(width) * static_cast<std::size_t>(width) *
-             static_cast<std::size_t>(height)) {
-  cells_.resize(cells_.capacity());
+      numbers_(static_cast<std::size_t>(width) * static_cast<std::size_t>(width) *
+               static_cast<std::size_t>(height)),
+      cells_(most) {
+  cells_.resize(most);
+  clear();
 }
 
 std::size_t SurfelMap::slot(const Grid::CellIndex& index) const {
@@ -40,7 +42,34 @@ std::size_t SurfelMap::slot(const Grid::CellIndex& index) const {
 }
 
 void SurfelMap::clear() {
+  numbers_.assign(numbers_.capacity(), 0);
   for (Cell& cell : cells_) cell.is_used = false;
+  next_ = 0;
+}
+
+SurfelMap::Cell* SurfelMap::find(const Grid::CellIndex& index) {
+  const std::uint32_t number = numbers_[slot(index)];
+  if (number == 0) return nullptr;
+  Cell& cell = cells_[number - 1];
+  return cell.index == index ? &cell : nullptr;
+}
+
+SurfelMap::Cell& SurfelMap::find_or_add(const Grid::CellIndex& index) {
+  std::uint32_t& number = numbers_[slot(index)];
+  if (number == 0) {
+    Cell& oldest = cells_[next_];
+    if (oldest.is_used) numbers_[slot(oldest.index)] = 0;
+    number = static_cast<std::uint32_t>(next_ + 1);
+    next_ = (next_ + 1) % cells_.size();
+    oldest.is_used = false;
+  }
+  Cell& cell = cells_[number - 1];
+  if (!cell.is_used || cell.index != index) {
+    cell = Cell();
+    cell.index = index;
+    cell.is_used = true;
+  }
+  return cell;
 }
 
 Eigen::Vector3f SurfelMap::middle(const Cell& cell) const {
@@ -51,13 +80,7 @@ Eigen::Vector3f SurfelMap::middle(const Cell& cell) const {
 }
 
 void SurfelMap::add(const Eigen::Vector3f& point) {
-  const Grid::CellIndex index = Grid::index_of(point, inverse_);
-  Cell& cell = cells_[slot(index)];
-  if (!cell.is_used || cell.index != index) {
-    cell = Cell();
-    cell.index = index;
-    cell.is_used = true;
-  }
+  Cell& cell = find_or_add(Grid::index_of(point, inverse_));
   if (cell.is_plane && cell.points >= kSettledPoints && ++cell.left_out % kSettledStride != 0)
     return;
   if (cell.points > kMaxPoints) {
@@ -81,11 +104,10 @@ void SurfelMap::add(const Eigen::Vector3f& point) {
 }
 
 const Surfel* SurfelMap::at(const Eigen::Vector3f& point) {
-  const Grid::CellIndex index = Grid::index_of(point, inverse_);
-  Cell& cell = cells_[slot(index)];
-  if (!cell.is_used || cell.index != index) return nullptr;
-  if (!cell.is_fresh) fit(cell);
-  return cell.is_plane ? &cell.surfel : nullptr;
+  Cell* const cell = find(Grid::index_of(point, inverse_));
+  if (cell == nullptr) return nullptr;
+  if (!cell->is_fresh) fit(*cell);
+  return cell->is_plane ? &cell->surfel : nullptr;
 }
 
 void SurfelMap::fit(Cell& cell) const {

@@ -8,14 +8,20 @@ VoxelHashMap::VoxelHashMap(std::size_t capacity)
     : voxels_(capacity),
       numbers_(std::bit_ceil(2 * capacity)),
       mask_(numbers_.capacity() - 1),
-      in_block_(BlockGrid::kSlots) {
+      in_block_(BlockGrid::kSlots),
+      in_region_(RegionGrid::kSlots) {
   clear();
 }
 
 void VoxelHashMap::clear() {
   voxels_.clear();
+  clear_index();
+}
+
+void VoxelHashMap::clear_index() {
   numbers_.assign(numbers_.capacity(), 0);
   in_block_.assign(in_block_.capacity(), 0);
+  in_region_.assign(in_region_.capacity(), 0);
 }
 
 void VoxelHashMap::index(std::size_t voxel, std::size_t slot) {
@@ -32,11 +38,13 @@ MapVoxel* VoxelHashMap::find_or_add(const VoxelKey& key) {
   voxels_.push_back(voxel);
   index(voxels_.size() - 1, slot);
   ++in_block_[block_of(key)];
+  ++in_region_[region_of(key)];
   return &voxels_.back();
 }
 
 void VoxelHashMap::erase(std::size_t voxel) {
   --in_block_[block_of(voxels_[voxel].key)];
+  --in_region_[region_of(voxels_[voxel].key)];
   // What follows in the same run of slots moves up, so that no search ends at the gap.
   std::size_t gap = voxels_[voxel].slot;
   for (std::size_t slot = (gap + 1) & mask_; numbers_[slot] != 0; slot = (slot + 1) & mask_) {
@@ -55,13 +63,13 @@ void VoxelHashMap::erase(std::size_t voxel) {
 }
 
 void VoxelHashMap::shift(int dx, int dy, int dz) {
-  numbers_.assign(numbers_.capacity(), 0);
-  in_block_.assign(in_block_.capacity(), 0);
+  clear_index();
   for (std::size_t i = 0; i < voxels_.size(); ++i) {
     VoxelKey& key = voxels_[i].key;
     key = key.shifted(dx, dy, dz);
     index(i, slot_of(key));
     ++in_block_[block_of(key)];
+    ++in_region_[region_of(key)];
   }
 }
 

@@ -30,6 +30,7 @@ inline void require(const Result<void>& done) {
 
 void add_info(CLI::App& app);
 void add_decode(CLI::App& app);
+void add_bench(CLI::App& app);
 void add_detect(CLI::App& app);
 void add_simulate(CLI::App& app);
 void add_train(CLI::App& app);

@@ -59,7 +59,9 @@ public:
   const StageTimes& stage_times() const { return timer_.times(); }
   /// What found the obstacles of the last list, and in which points.
   const Detector& detector() const { return uses_map_ ? map_detector_ : sweep_detector_; }
-  const PointCloud& ground() const { return uses_map_ ? mapper_->map().cloud() : sweep_.points; }
+  const PointCloud& ground() const {
+    return uses_map_ ? mapper_->map().cloud() : mapper_->sweep().points;
+  }
   const Mapper& mapper() const { return *mapper_; }
   /// The settings that the sensors contradict.
   const SetupReport& setup() const { return setup_report_; }
@@ -79,7 +81,6 @@ private:
   float ground_at(const Eigen::Vector3d& place) const;
   void detect_in_sweep(const Sweep& sweep);
 
-  LidarSettings lidar_;
   std::unique_ptr<SyncBuffer> sensors_;
   std::unique_ptr<Mapper> mapper_;
   std::unique_ptr<SetupProbe> setup_;
@@ -88,8 +89,6 @@ private:
   Tracker tracker_, sweep_tracker_;
   MovingTracker moving_tracker_;
   MovingBoxes moving_boxes_;
-  SweepTrajectory still_;
-  DeskewedSweep sweep_;  // of a robot that stands
   FixedVector<Obstacle> found_;
   ObstacleList list_;
   std::optional<GridMaker> grid_maker_;

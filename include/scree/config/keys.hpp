@@ -165,7 +165,8 @@ void for_every_key(AnySettings& settings, Visit&& visit) {
   key("cloud_points", memory.cloud_points, "points", 4, 1 << 26,
       "a longer cloud of `scree detect` takes the memory that it needs");
   key("ground_cells", memory.ground_cells, "cells", 64, 1 << 26,
-      "largest raster of the ground's surface; a wider cloud gets larger cells");
+      "largest raster of the ground's surface, a fourth of a cloud's; wider ground gets larger "
+      "cells");
   key("obstacles", memory.obstacles, "obstacles", 1, 65536,
       "longest obstacle list; further ones are dropped and counted");
 }

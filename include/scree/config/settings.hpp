@@ -261,14 +261,18 @@ struct DetectorLimits {
 /// What the memory is taken for at the start.
 struct MemorySettings {
   int sweep_points = 1 << 17;
-  int map_voxels = 1 << 19;
+  int map_voxels = 1 << 18;
   int cloud_points = 1 << 20;
-  int ground_cells = 1 << 19;
+  int ground_cells = 1 << 17;
   int obstacles = 512;
 
   /// A quarter of a cloud's points leaves room: a fifth were edges in the paper's. A sweep has less
-  /// ground between what stands on it.
-  DetectorLimits for_cloud() const { return limits(cloud_points, 4); }
+  /// ground between what stands on it. A cloud's ground is wider than that around a robot.
+  DetectorLimits for_cloud() const {
+    DetectorLimits cloud = limits(cloud_points, 4);
+    cloud.ground_cells *= 4;
+    return cloud;
+  }
   DetectorLimits for_map() const { return limits(map_voxels, 4); }
   DetectorLimits for_sweep() const { return limits(sweep_points, 2); }
 

@@ -30,6 +30,8 @@ struct Pose {
     const Eigen::Quaterniond back = rotation.conjugate();
     return {-(back * translation), back};
   }
+  /// As a matrix, for many points.
+  Eigen::Isometry3d isometry() const { return Eigen::Translation3d(translation) * rotation; }
 };
 
 /// Rz(yaw) Ry(pitch) Rx(roll), angles in radians.

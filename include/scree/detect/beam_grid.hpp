@@ -64,7 +64,6 @@ public:
   /// Whether the ranges scatter, there and in the cells next to it, as they do among blades. At
   /// least six cells are so together, unless they stand alone.
   bool is_loose(std::size_t cell) const { return loose_[cell] != 0; }
-  bool has_loose() const { return std::ranges::find(loose_, 1) != loose_.end(); }
   /// is_loose() of all cells: not 0.
   std::span<const std::uint8_t> loose() const { return {loose_.data(), loose_.size()}; }
 

@@ -39,7 +39,8 @@ public:
   std::span<const std::uint32_t> sizes() const { return sizes_; }
 
 private:
-  enum State : std::uint8_t { unseen, clear, hanging, loose, firm };
+  using State = std::uint8_t;  ///< what is seen in a cell; the greater one counts
+  static constexpr State unseen = 0, clear = 1, hanging = 2, loose = 3, firm = 4;
   enum class Side : std::uint8_t { above, below };
 
   void mark(const CandidatePoints& bodies, Side side, const GroundSurface& surface,

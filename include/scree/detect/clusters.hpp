@@ -27,7 +27,8 @@ struct Cluster {
 /// The clusters of one cloud with their points.
 class Clusters {
 public:
-  explicit Clusters(std::size_t max_points);
+  /// @param least_size the least `min_size` that will be asked for
+  explicit Clusters(std::size_t max_points, std::size_t least_size = 1);
 
   /// Gathers the points of each label that is borne by at least `min_size` units, and their boxes.
   /// @param labels of each edge point, below `sizes.size()`, or kNoLabel

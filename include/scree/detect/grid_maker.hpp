@@ -31,7 +31,7 @@ public:
 private:
   void lay_out(const ObstacleList& list);
   void look_at_ground(const GroundSurface& surface, const Pose& surface_in_odom);
-  CellState state_of(const GroundSurface& surface, const Pose& odom_in_surface,
+  CellState state_of(const GroundSurface& surface, const Eigen::Matrix2d& turn,
                      const Eigen::Vector2d& middle) const;
   bool stands_off(const GroundSurface& surface, std::size_t cell) const;
   void cover(const ObstacleList& list, ObstacleKind kind, CellState state);

@@ -50,6 +50,16 @@ private:
     float cells = 0;                           ///< that it was laid through
   };
 
+  /// Sums over the ground in a row, up to a column: of cells, of their columns and of their
+  /// heights.
+  struct RowSums {
+    double cells = 0, x = 0, xx = 0, z = 0, xz = 0;
+    RowSums operator-(const RowSums& other) const {
+      return {cells - other.cells, x - other.x, xx - other.xx, z - other.z, xz - other.xz};
+    }
+  };
+
+  void sum_rows();
   void look_around(std::size_t cell);
   bool fit(std::size_t cell, Plane& plane) const;
   int steps_inside(std::size_t cell, int along_x, int along_y) const;
@@ -74,6 +84,7 @@ private:
   FixedVector<float> values_;         // scratch
   PointCloud places_;
   FixedVector<GroundEdge> edges_;
+  FixedVector<RowSums> row_sums_;  // one more a row than it has cells
 };
 
 }  // namespace scree

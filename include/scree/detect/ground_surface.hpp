@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <initializer_list>
 #include <span>
 
 #include "scree/core/fixed_vector.hpp"
@@ -35,8 +34,11 @@ class GroundSurface {
 public:
   GroundSurface(std::size_t max_points, std::size_t max_cells);
 
+  /// A rough surface is right to some centimetres, and takes half the time.
+  enum class Accuracy : std::uint8_t { full, rough };
   /// @pre finite points, no more than max_points of them
-  void build(PointView points, const GroundSurfaceSettings& settings);
+  void build(PointView points, const GroundSurfaceSettings& settings,
+             Accuracy accuracy = Accuracy::full);
   /// Builds the surface of the same points again. In loose cells the height is what was seen lowest
   /// instead of the median: below grass the ground goes on. The raster stays.
   /// @param loose for each cell of the raster whether it is loose; 0: it is not
@@ -94,17 +96,17 @@ private:
   /// @return the mean number of points in the cells that have any
   float gather(PointView points);
   /// Finds the ground and lays the surface through it, from the heights of the cells.
-  void find_ground(const GroundSurfaceSettings& settings);
+  void find_ground(const GroundSurfaceSettings& settings, Accuracy accuracy);
   void find_smooth_cells(float max_slope);
   void add_planar_cells(float max_slope);
   void find_patches(float max_slope);
   void join_windows();
   template <class Visit>
   void for_each_planar_cell(const Visit& visit) const;
-  void add_trend(float sign, std::initializer_list<FixedVector<float>*> rasters) const;
   void join_trend(float tolerance);
-  void join_patches(float tolerance);
-  void span();
+  void join_patches(float tolerance, Accuracy accuracy);
+  void mark_ground();
+  void span(int steps);
   /// Mean height difference of the two neighbours of a cell (Sobel's 1-2-1 across), metres.
   float rise(std::size_t cell, std::size_t along, std::size_t across) const;
   float blurred(std::size_t cell) const;
@@ -130,5 +132,30 @@ private:
   RasterFill fill_;
   Depressions depressions_;
 };
+
+inline std::size_t GroundSurface::cell_at(float x, float y) const {
+  const auto index = [](float value, std::size_t count) {
+    return static_cast<std::size_t>(
+        static_cast<std::int32_t>(std::clamp(value, 0.0F, static_cast<float>(count - 1))));
+  };
+  return index((y - low_y_) * inverse_, rows_) * columns_ +
+         index((x - low_x_) * inverse_, columns_);
+}
+
+inline float GroundSurface::height(float x, float y) const {
+  const auto split = [](float value, std::size_t count, float& share) {
+    const float inside = std::clamp(value - 0.5F, 0.0F, static_cast<float>(count) - 1.001F);
+    const auto index = static_cast<std::int32_t>(inside);
+    share = inside - static_cast<float>(index);
+    return static_cast<std::size_t>(index);
+  };
+  float u = 0, v = 0;
+  const std::size_t column = split((x - low_x_) * inverse_, columns_, u);
+  const std::size_t row = split((y - low_y_) * inverse_, rows_, v);
+  const float* const at = smooth_.data() + row * columns_ + column;
+  const float near = at[0] + u * (at[1] - at[0]);
+  const float far = at[columns_] + u * (at[columns_ + 1] - at[columns_]);
+  return near + v * (far - near);
+}
 
 }  // namespace scree

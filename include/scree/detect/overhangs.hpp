@@ -12,18 +12,18 @@ public:
   /// a slope of 45 degrees to stay within any sensible clearance.
   static constexpr float kColumn = 1.0F;
 
-  explicit Overhangs(std::size_t max_points) : columns_(max_points), heights_(max_points) {}
+  explicit Overhangs(std::size_t max_points) : heights_(max_points) {}
 
   /// Takes out of `cloud` the points more than `clearance` metres above the ground of their column.
   /// That ground is the third-lowest point, so that one or two stray points below it do no harm.
+  /// @param columns is working memory
   /// @pre as PlaneCells::build() with a radius of kRadius
-  void remove(PointCloud& cloud, float clearance);
+  void remove(PointCloud& cloud, float clearance, PlaneCells& columns);
 
   /// The radius for which PlaneCells has columns of kColumn.
   static constexpr float kRadius = 3 * kColumn;
 
 private:
-  PlaneCells columns_;
   FixedVector<float> heights_;
 };
 

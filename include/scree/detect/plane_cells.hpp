@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -40,7 +41,12 @@ public:
   /// Calls visit(Run cell, std::span<const Run> neighbourhood) for each occupied cell; every point
   /// within the radius of build() of a point in the cell lies in the neighbourhood, and others.
   template <class Visit>
-  void for_each_cell(Visit&& visit) const;
+  void for_each_cell(Visit&& visit) const {
+    for_each_cell([](Run) { return true; }, visit);
+  }
+  /// The same for the cells of which wants(Run cell) is true.
+  template <class Wants, class Visit>
+  void for_each_cell(Wants&& wants, Visit&& visit) const;
 
   /// Calls visit(Run) for runs that together hold every point of the rectangle, and others.
   template <class Visit>
@@ -54,6 +60,7 @@ private:
     return row * columns_ + column;
   }
   std::uint32_t first_not_below(std::uint64_t key) const;
+  std::uint32_t advance(std::uint32_t from, std::uint64_t key) const;
 
   float inverse_ = 1;
   CellRange column_range_, row_range_;
@@ -78,23 +85,36 @@ void PlaneCells::remove(LeaveOut&& leave_out) {
   points_.resize(kept);
 }
 
-template <class Visit>
-void PlaneCells::for_each_cell(Visit&& visit) const {
+template <class Wants, class Visit>
+void PlaneCells::for_each_cell(Wants&& wants, Visit&& visit) const {
   const auto count = static_cast<std::uint32_t>(size());
   std::array<Run, kRows> runs{};
   for (std::uint32_t begin = 0; begin < count;) {
     const std::uint64_t key = sort_.key(begin);
     std::uint32_t end = begin;
     while (end < count && sort_.key(end) == key) ++end;
-    for (std::size_t k = 0; k < kRows; ++k) {
-      const std::uint64_t center = key + k * columns_ - kReach * columns_;
-      Run& run = runs[k];
-      while (run.begin < count && sort_.key(run.begin) < center - kReach) ++run.begin;
-      while (run.end < count && sort_.key(run.end) <= center + kReach) ++run.end;
+    if (wants(Run{begin, end})) {
+      for (std::size_t k = 0; k < kRows; ++k) {
+        const std::uint64_t center = key + k * columns_ - kReach * columns_;
+        runs[k].begin = advance(runs[k].begin, center - kReach);
+        runs[k].end = advance(std::max(runs[k].end, runs[k].begin), center + kReach + 1);
+      }
+      visit(Run{begin, end}, std::span<const Run>(runs));
     }
-    visit(Run{begin, end}, std::span<const Run>(runs));
     begin = end;
   }
+}
+
+/// The first point from one on with a key that is not below, by strides that double while they can.
+inline std::uint32_t PlaneCells::advance(std::uint32_t from, std::uint64_t key) const {
+  const auto count = static_cast<std::uint32_t>(size());
+  std::uint32_t stride = 4;
+  for (; from + stride < count && sort_.key(from + stride) < key; stride *= 2) from += stride;
+  for (; stride > 4; stride /= 2) {
+    if (from + stride / 2 < count && sort_.key(from + stride / 2) < key) from += stride / 2;
+  }
+  while (from < count && sort_.key(from) < key) ++from;
+  return from;
 }
 
 template <class Visit>

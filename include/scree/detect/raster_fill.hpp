@@ -14,13 +14,20 @@ namespace scree {
 /// hole in a slope is spanned by the slope. Memory is taken once.
 class RasterFill {
 public:
+  /// Smooths a level over a few cells; the coarser ones do the rest.
+  static constexpr int kSteps = 12;
+  /// Right to some centimetres.
+  static constexpr int kRoughSteps = 3;
+
   explicit RasterFill(std::size_t max_cells);
 
   /// Fills a raster, given row by row.
   /// @param known for each cell whether its height is kept; 0: it is overwritten
   /// @param heights of the cells, metres; all become 0 where nothing at all is known
+  /// @param steps of the relaxation on each level: more are smoother
   /// @pre columns * rows <= max_cells
-  void fill(std::size_t columns, std::size_t rows, const std::uint8_t* known, float* heights);
+  void fill(std::size_t columns, std::size_t rows, const std::uint8_t* known, float* heights,
+            int steps = kSteps);
 
 private:
   struct Level {
@@ -34,7 +41,7 @@ private:
 
   void pull(const Level& fine, const Level& coarse);
   void push(const Level& coarse, const Level& fine);
-  void relax(const Level& level);
+  void relax(const Level& level, int steps);
 
   static constexpr std::size_t kMostLevels = 24;  // for rasters of up to 2^23 cells on a side
   FixedVector<Level> levels_;

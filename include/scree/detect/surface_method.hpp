@@ -40,6 +40,8 @@ public:
   // What each stage of the last call gave.
   const GroundSurface& ground() const { return surface_; }
   const SlopedCloud& sloped() const { return sloped_; }
+  /// Free until the next call.
+  PlaneCells& cells() { return sloped_.cells; }
   const CandidatePoints& candidates() const { return candidates_; }
   ClusteredPoints result() const { return {kept_, clusters_}; }
   /// Where the ground ends or steps.

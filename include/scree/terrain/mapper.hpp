@@ -34,6 +34,9 @@ public:
     add(sweep, sensors, none);
   }
 
+  /// Takes a sweep by itself, as if the robot stood still. The map stays as it is.
+  void take_still(const Sweep& sweep);
+
   /// `base` in the map's frame at the end of the last sweep.
   const Pose& pose() const { return filter_.pose(); }
   /// The map's frame in `odom`, as far as it is known by now.
@@ -51,7 +54,7 @@ public:
   std::uint64_t slips() const { return slips_; }
   /// What moves in the last sweep.
   const MovingPoints& moving() const { return moving_; }
-  OwnReturns& own_returns() { return own_returns_; }
+  const OwnReturns& own_returns() const { return own_returns_; }
   /// The last sweep in `base` at its end.
   const DeskewedSweep& sweep() const { return sweep_; }
 

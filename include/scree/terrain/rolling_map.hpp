@@ -63,6 +63,13 @@ public:
   std::uint64_t dropped() const { return dropped_; }
 
 private:
+  /// Tiles of the plane, eight voxels wide; those far apart share a slot.
+  using TileGrid = ToroidalGrid<64, 1>;
+  /// A voxel for the cloud.
+  struct Chosen {
+    std::uint32_t voxel, tile;
+  };
+
   VoxelKey key_of(const Eigen::Vector3f& point) const;
   void recenter(const Pose& pose);
   void decay_beam_counts();
@@ -77,12 +84,13 @@ private:
                          const Eigen::Vector3f& translation);
   void add_passing_beam(const Eigen::Vector3f& origin, const Eigen::Vector3f& beam);
   void fit_reach();
-  void prune(const Pose& pose);
+  void prune();
   bool has_left(const Obstacle& obstacle) const;
   bool confirm(MapVoxel& voxel) const;
   bool has_confirmation(const MapVoxel& voxel) const;
   bool is_dust(const MapVoxel& voxel) const;
-  void extract_cloud(const Eigen::Vector3f& robot);
+  void extract_cloud();
+  static std::uint32_t tile_of(const VoxelKey& key);
 
   MapSettings settings_;
   float inverse_;  // voxels a metre
@@ -96,7 +104,9 @@ private:
   std::size_t next_passing_ = 0;
   FixedVector<BeamCount> beams_;
   FixedVector<Eigen::Vector3f> origins_;  // of the beam that hit each last
-  std::uint32_t sweep_ = 0;               // number of the last sweep, from 1 on
+  FixedVector<std::uint32_t> places_;     // in the cloud, by tile
+  FixedVector<Chosen> chosen_;
+  std::uint32_t sweep_ = 0;  // number of the last sweep, from 1 on
   std::int64_t end_ns_ = 0, decayed_ns_ = 0;
   std::uint64_t dropped_ = 0;
 };

@@ -18,17 +18,18 @@ struct Surfel {
   float points = 0;
 };
 
-/// The ground around the robot as planes in cubic cells, for registration. Its memory is bounded by
-/// a ToroidalGrid; a slot belongs to the cell that was seen last, so that what the robot leaves
-/// behind goes. Planes of many points hardly move any more: sweeps are laid onto the ground as it
-/// was first seen.
+/// The ground around the robot as planes in cubic cells, for registration. Its memory is bounded. A
+/// slot of its ToroidalGrid belongs to the cell that was seen last, so that what the robot leaves
+/// behind goes; where there is no more room, what was seen first makes some. Planes of many points
+/// hardly move any more: sweeps are laid onto the ground as it was first seen.
 /// @note Points are floats in the map's frame: good to 1 mm as far as 8 km from its origin, to 1 cm
 /// as far as 80 km.
 class SurfelMap {
 public:
   /// @param cell edge, metres
   /// @param width, height of the grid in cells, powers of two: 38 m x 38 m x 19 m at cells of 0.3 m
-  explicit SurfelMap(float cell, int width = 128, int height = 64);
+  /// @param most cells that it has room for: twice those of dense ground as wide as the grid
+  explicit SurfelMap(float cell, int width = 128, int height = 64, std::size_t most = 1U << 15U);
 
   void add(const Eigen::Vector3f& point);
 
@@ -55,10 +56,15 @@ private:
   void fit(Cell& cell) const;
 
   std::size_t slot(const Grid::CellIndex& index) const;
+  /// Null where there is none.
+  Cell* find(const Grid::CellIndex& index);
+  Cell& find_or_add(const Grid::CellIndex& index);
 
   float cell_, inverse_;
   int width_, height_;
-  FixedVector<Cell> cells_;
+  FixedVector<std::uint32_t> numbers_;  // by slot: the cell's place plus one, 0 is free
+  FixedVector<Cell> cells_;             // in a ring
+  std::size_t next_ = 0;
 };
 
 }  // namespace scree

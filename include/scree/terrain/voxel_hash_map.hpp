@@ -6,6 +6,7 @@
 
 #include "scree/core/beam_count.hpp"
 #include "scree/core/fixed_vector.hpp"
+#include "scree/core/floor_to_cell.hpp"
 #include "scree/terrain/toroidal_grid.hpp"
 
 namespace scree {
@@ -16,27 +17,33 @@ struct VoxelKey {
   std::int16_t x = 0, y = 0, z = 0;
   bool operator==(const VoxelKey&) const = default;
 
+  /// Of the voxel that holds a place, given in voxels from the origin.
+  static VoxelKey at(const Eigen::Vector3f& place) {
+    return {static_cast<std::int16_t>(floor_to_cell(place.x())),
+            static_cast<std::int16_t>(floor_to_cell(place.y())),
+            static_cast<std::int16_t>(floor_to_cell(place.z()))};
+  }
   VoxelKey shifted(int dx, int dy, int dz) const {
     return {static_cast<std::int16_t>(x + dx), static_cast<std::int16_t>(y + dy),
             static_cast<std::int16_t>(z + dz)};
   }
 };
 
-/// What the sweeps have seen in one voxel.
-struct MapVoxel {
+/// What the sweeps have seen in one voxel; a line of a processor's cache holds it.
+struct alignas(64) MapVoxel {
   VoxelKey key;
-  std::uint16_t hits = 0;           ///< points, saturating
-  std::uint16_t isolated_hits = 0;  ///< how many of the hits ended alone, see RangeScatter
-  std::uint16_t sweeps = 0;         ///< that hit it, saturating
-  std::uint16_t misses = 0;         ///< beams that went through it since the last hit
+  std::uint8_t hits = 0;           ///< points, saturating
+  std::uint8_t isolated_hits = 0;  ///< how many of the hits ended alone, see RangeScatter
+  std::uint8_t sweeps = 0;         ///< that hit it, saturating
+  std::uint8_t misses = 0;         ///< beams that went through it since the last hit, saturating
+  bool is_confirmed = false;       ///< what the last look at its neighbourhood found
   BeamCount beams;
   std::uint32_t last_sweep = 0;                         ///< number of the last sweep that hit it
-  std::int64_t seen_ns = 0;                             ///< end of that sweep
+  std::uint32_t seen_ds = 0;                            ///< end of that sweep, tenths of seconds
   std::uint32_t slot = 0;                               ///< kept by VoxelHashMap
   Eigen::Vector3f mean = Eigen::Vector3f::Zero();       ///< of its points, the map's frame - origin
   Eigen::Vector3f seen_from = Eigen::Vector3f::Zero();  ///< at the last hit, the same frame
   float reflectivity = 0;
-  bool is_confirmed = false;  ///< what the last look at its neighbourhood found
 
   bool is_isolated() const { return isolated_hits == hits; }
 };
@@ -71,16 +78,25 @@ public:
   /// Moves all keys.
   void shift(int dx, int dy, int dz);
 
-  /// Whether the block of 4 x 4 x 4 voxels around a key surely holds none. Most of a beam's way is
-  /// empty, and is passed quickly by this.
-  bool is_block_empty(const VoxelKey& key) const { return in_block_[block_of(key)] == 0; }
+  /// The edge of the largest cube around a key, among those of 16, 4 and 1 voxels, that surely
+  /// holds none; 0 where there is one. Most of a beam's way is empty, and is passed quickly by
+  /// this.
+  int empty_edge(const VoxelKey& key) const {
+    if (in_region_[region_of(key)] == 0) return 16;
+    if (in_block_[block_of(key)] == 0) return 4;
+    return numbers_[slot_of(key)] == 0 ? 1 : 0;
+  }
 
 private:
-  /// Blocks that lie far apart share a count.
+  /// Blocks, and regions, that lie far apart share a count.
   using BlockGrid = ToroidalGrid<128, 32>;
+  using RegionGrid = ToroidalGrid<64, 16>;
 
   static std::size_t block_of(const VoxelKey& key) {
     return BlockGrid::CellIndex{key.x >> 2, key.y >> 2, key.z >> 2}.slot();
+  }
+  static std::size_t region_of(const VoxelKey& key) {
+    return RegionGrid::CellIndex{key.x >> 4, key.y >> 4, key.z >> 4}.slot();
   }
   std::size_t home_slot(const VoxelKey& key) const;
   /// The slot of a voxel, or the free one where it would stand.
@@ -90,11 +106,13 @@ private:
     return slot;
   }
   void index(std::size_t voxel, std::size_t slot);
+  void clear_index();
 
   FixedVector<MapVoxel> voxels_;
   FixedVector<std::uint32_t> numbers_;  // by slot: the voxel's index plus one, 0 is free
   std::size_t mask_;
-  FixedVector<std::uint32_t> in_block_;  // voxels, by block
+  FixedVector<std::uint16_t> in_block_;   // voxels, by block of 4 x 4 x 4
+  FixedVector<std::uint16_t> in_region_;  // voxels, by region of 16 x 16 x 16
 };
 
 inline std::size_t VoxelHashMap::home_slot(const VoxelKey& key) const {

@@ -18,6 +18,12 @@ float place(std::size_t index) {
   return (static_cast<float>(index) + 0.5F - kSide / 2.0F) * kCell;
 }
 
+std::vector<float> trend_of(GroundTrend& trend, std::size_t cells) {
+  std::vector<float> heights(cells, 0);
+  trend.add_to(heights.data(), 1);
+  return heights;
+}
+
 /// A raster of 24 x 24 m around a robot that stands still: the rings of a lidar on ground of this
 /// shape.
 class Rings {
@@ -34,12 +40,13 @@ public:
         }
       }
     }
-    trend_.fit(kSide, kSide, known_.data(), heights_.data(), kCell, kReach);
+    fitted_.fit(kSide, kSide, known_.data(), heights_.data(), kCell, kReach);
+    trend_ = trend_of(fitted_, kSide * kSide);
   }
 
   float trend(float x, float y) const {
     const auto index = [](float p) { return static_cast<std::size_t>(p / kCell + kSide / 2.0F); };
-    return trend_.at(index(x), index(y));
+    return trend_[index(y) * kSide + index(x)];
   }
   /// The largest distance of the trend from the ground within the rings.
   float error(const std::function<float(float, float)>& ground) const {
@@ -51,12 +58,13 @@ public:
     }
     return largest;
   }
-  GroundTrend& fitted() { return trend_; }
+  GroundTrend& fitted() { return fitted_; }
 
 private:
   std::vector<std::uint8_t> known_;
   std::vector<float> heights_;
-  GroundTrend trend_{kSide * kSide};
+  GroundTrend fitted_{kSide * kSide};
+  std::vector<float> trend_;
 };
 
 float incline(float x, float y) {
@@ -85,17 +93,17 @@ TEST(GroundTrend, AnswersWhereLittleOrNothingIsKnown) {
   std::vector<float> heights(kSide * kSide, NAN);
   GroundTrend trend(kSide * kSide);
   trend.fit(kSide, kSide, known.data(), heights.data(), kCell, kReach);
-  EXPECT_EQ(trend.at(7, 200), 0);
+  EXPECT_EQ(trend_of(trend, kSide * kSide)[200 * kSide + 7], 0);
   known[5 * kSide + 9] = 1;
   heights[5 * kSide + 9] = 1;
   trend.fit(kSide, kSide, known.data(), heights.data(), kCell, kReach);
-  EXPECT_TRUE(std::isfinite(trend.at(200, 7)));
+  EXPECT_TRUE(std::isfinite(trend_of(trend, kSide * kSide)[7 * kSide + 200]));
   for (const auto& [columns, rows] :
        {std::pair<std::size_t, std::size_t>(1, 1), {1, 500}, {500, 1}}) {
     known.assign(kSide * kSide, 1);
     heights.assign(kSide * kSide, 2);
     trend.fit(columns, rows, known.data(), heights.data(), kCell, kReach);
-    EXPECT_NEAR(trend.at(columns - 1, rows - 1), 2, 0.1) << columns << ' ' << rows;
+    EXPECT_NEAR(trend_of(trend, columns * rows).back(), 2, 0.1) << columns << ' ' << rows;
   }
 }
 

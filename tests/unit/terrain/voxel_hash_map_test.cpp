@@ -9,7 +9,7 @@
 namespace scree {
 namespace {
 
-using Reference = std::map<std::tuple<int, int, int>, std::uint16_t>;
+using Reference = std::map<std::tuple<int, int, int>, std::uint8_t>;
 
 void expect_same(const VoxelHashMap& map, const Reference& reference) {
   ASSERT_EQ(map.size(), reference.size());
@@ -19,8 +19,17 @@ void expect_same(const VoxelHashMap& map, const Reference& reference) {
                          static_cast<std::int16_t>(z)};
     ASSERT_NE(map.find(voxel), nullptr);
     EXPECT_EQ(map.find(voxel)->hits, hits);
-    EXPECT_FALSE(map.is_block_empty(voxel));
+    EXPECT_EQ(map.empty_edge(voxel), 0);
   }
+}
+
+TEST(VoxelHashMap, KnowsTheLargestCubeAroundAPlaceThatIsEmpty) {
+  VoxelHashMap map(10);
+  map.find_or_add({1, 1, 1});
+  EXPECT_EQ(map.empty_edge({1, 1, 1}), 0);
+  EXPECT_EQ(map.empty_edge({2, 1, 1}), 1);
+  EXPECT_EQ(map.empty_edge({4, 1, 1}), 4);
+  EXPECT_EQ(map.empty_edge({-1, 1, 1}), 16);
 }
 
 TEST(VoxelHashMap, HoldsWhatAPlainMapHolds) {
@@ -55,7 +64,7 @@ TEST(VoxelHashMap, HoldsWhatAPlainMapHolds) {
 
   map.clear();
   expect_same(map, {});
-  EXPECT_TRUE(map.is_block_empty({100, -1000, 7}));
+  EXPECT_EQ(map.empty_edge({100, -1000, 7}), 16);
 }
 
 }  // namespace

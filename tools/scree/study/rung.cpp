@@ -49,7 +49,7 @@ ClusteredPoints SurfaceRung::find(PointView cloud) {
 void SurfaceRung::take_in(PointView cloud) {
   const auto leaf_size = static_cast<float>(settings_.leaf_size);
   voxel_grid_.filter(cloud, leaf_size, reach_of_cells(leaf_size, points_.capacity(), 3), points_);
-  overhangs_.remove(points_, static_cast<float>(settings_.clearance));
+  overhangs_.remove(points_, static_cast<float>(settings_.clearance), sloped_.cells);
 }
 
 void SurfaceRung::gather_candidates() {
