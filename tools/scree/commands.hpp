@@ -36,6 +36,7 @@ void add_train(CLI::App& app);
 void add_evaluate(CLI::App& app);
 void add_study(CLI::App& app);
 void add_picture(CLI::App& app);
+void add_report(CLI::App& app);
 void add_replay(CLI::App& app);
 void add_slice(CLI::App& app);
 void add_record(CLI::App& app);

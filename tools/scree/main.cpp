@@ -19,6 +19,7 @@ void add_all(CLI::App& app) {
   scree::cli::add_evaluate(app);
   scree::cli::add_study(app);
   scree::cli::add_picture(app);
+  scree::cli::add_report(app);
   scree::cli::add_replay(app);
   scree::cli::add_slice(app);
   scree::cli::add_record(app);
