@@ -41,6 +41,7 @@ void add_replay(CLI::App& app);
 void add_slice(CLI::App& app);
 void add_record(CLI::App& app);
 void add_watch(CLI::App& app);
+void add_view(CLI::App& app);
 void add_status(CLI::App& app);
 void add_doctor(CLI::App& app);
 void add_top(CLI::App& app);

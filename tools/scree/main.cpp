@@ -24,6 +24,7 @@ void add_all(CLI::App& app) {
   scree::cli::add_slice(app);
   scree::cli::add_record(app);
   scree::cli::add_watch(app);
+  scree::cli::add_view(app);
   scree::cli::add_status(app);
   scree::cli::add_doctor(app);
   scree::cli::add_top(app);

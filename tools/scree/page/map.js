@@ -194,7 +194,7 @@ function drawUnknown(context, view, grid) {
 function unknownImage({ state, columns, rows }) {
   const canvas = Object.assign(document.createElement('canvas'), { width: rows, height: columns });
   const context = canvas.getContext('2d');
-  context.fillStyle = 'rgba(60, 20, 90, 0.36)';
+  context.fillStyle = 'rgba(60, 20, 90, 0.26)';
   state.forEach((cell, i) => {
     if (cell === 0) context.fillRect(rows - 1 - Math.floor(i / columns), columns - 1 - i % columns, 1, 1);
   });

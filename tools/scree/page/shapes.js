@@ -141,7 +141,7 @@ function fillLegend(element, hasTruth) {
     [box(COLOURS.mover), 'moves; arrow: one second'],
     ['<svg width="22" height="14"><path d="M11 1 L17 13 L11 10 L5 13Z" fill="#00765a"/></svg>', 'robot and its way'],
     ['<svg width="22" height="14"><rect x="2" y="2" width="18" height="10" fill="#eceef1" stroke="#b6bac4"/><path d="M4 12L12 2M10 12L18 2" stroke="#c9cdd6"/></svg>', 'never seen'],
-    ['<svg width="22" height="14"><rect x="2" y="2" width="18" height="10" fill="rgba(60,20,90,0.36)"/></svg>', 'unknown now (layer)'],
+    ['<svg width="22" height="14"><rect x="2" y="2" width="18" height="10" fill="rgba(60,20,90,0.26)"/></svg>', 'unknown now (layer)'],
   ];
   if (hasTruth) {
     rows.push([box('#000000', 'fill-opacity="0" stroke-dasharray="3 3" stroke-width="1.2"'), 'truth']);

@@ -12,6 +12,7 @@
 #include "scoring/json_field.hpp"
 #include "scree/capture/lcm_log.hpp"
 #include "scree/publish/message_decoder.hpp"
+#include "scree/publish/messages.hpp"
 #include "scree/publish/publisher.hpp"
 
 namespace scree::cli {
@@ -152,29 +153,6 @@ void read_grid(const JsonField& field, ObstacleGrid& grid) {
     if (next == ground.size()) field["ground"].refuse("too few heights");
     grid.ground.push_back(static_cast<std::int16_t>(ground[next++].integer(-32767, 32767)));
   }
-}
-
-/// False where it contradicts itself.
-bool from_message(const grid_t& message, ObstacleGrid& grid) {
-  constexpr auto kMost = static_cast<std::int32_t>(ObstacleGrid::kMostCells);
-  const bool has_size = message.columns >= 0 && message.columns <= kMost && message.rows >= 0 &&
-                        message.rows <= kMost;
-  if (!has_size || message.columns * message.rows != message.cells || !(message.cell_size > 0))
-    return false;
-  grid.clear();
-  grid.stamp_ns = message.stamp_ns;
-  grid.pose.translation = Eigen::Vector3d(message.p);
-  grid.pose.rotation = Eigen::Quaterniond(message.q[0], message.q[1], message.q[2], message.q[3]);
-  grid.origin = Eigen::Vector2d(message.origin);
-  grid.cell_size = message.cell_size;
-  grid.columns = static_cast<std::size_t>(message.columns);
-  grid.rows = static_cast<std::size_t>(message.rows);
-  for (std::size_t i = 0; i < grid.cells(); ++i) {
-    grid.state.push_back(
-        static_cast<CellState>(std::min<std::uint8_t>(message.state[i], kCellStates - 1)));
-    grid.ground.push_back(message.ground[i]);
-  }
-  return grid.origin.allFinite() && grid.pose.translation.allFinite();
 }
 
 /// Lists have no other ground than that of their grids.
