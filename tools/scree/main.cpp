@@ -26,6 +26,7 @@ void add_all(CLI::App& app) {
   scree::cli::add_watch(app);
   scree::cli::add_view(app);
   scree::cli::add_status(app);
+  scree::cli::add_mark(app);
   scree::cli::add_doctor(app);
   scree::cli::add_top(app);
   scree::cli::add_config(app);

@@ -11,9 +11,7 @@ from pathlib import Path
 from struct import error as StructError
 from typing import Any
 
-from .grid_t import grid_t
-from .health_t import health_t
-from .obstacle_list_t import obstacle_list_t
+from .decoding import decode_grid, decode_health, decode_list
 from .records import Grid, ObstacleList, grid_of_json, grid_of_message, list_of_json, list_of_message
 
 Health = dict[str, Any]  # as `scree status --json` prints it
@@ -112,11 +110,11 @@ def _read_log(source: Path) -> Iterator[Record]:
     for event in EventLog(str(source), "r"):
         try:
             if event.channel == "SCREE_OBSTACLES":
-                yield list_of_message(obstacle_list_t.decode(event.data))
+                yield list_of_message(decode_list(event.data))
             elif event.channel == "SCREE_GRID":
-                yield grid_of_message(grid_t.decode(event.data))
+                yield grid_of_message(decode_grid(event.data))
             elif event.channel == "SCREE_HEALTH":
-                yield health_of_message(health_t.decode(event.data))
+                yield health_of_message(decode_health(event.data))
         except (ValueError, IndexError, OverflowError, StructError):
             continue  # of another version, or broken: as the C++ programs do, it is passed over
 

@@ -11,9 +11,7 @@ from typing import Any
 
 import lcm
 
-from .grid_t import grid_t
-from .health_t import health_t
-from .obstacle_list_t import obstacle_list_t
+from .decoding import decode_grid, decode_health, decode_list
 from .records import Grid, Obstacle, ObstacleList, grid_of_message, list_of_message
 
 DEFAULT_URL = "udpm://239.255.76.67:7667?ttl=0"
@@ -48,11 +46,9 @@ class Subscription:
         self._list_at = self._health_at = float("-inf")
         self.refused = 0  # messages that could not be understood
         self._closed = threading.Event()
-        self._hear(
-            "SCREE_OBSTACLES", lambda data: list_of_message(obstacle_list_t.decode(data)), self._take_list
-        )
-        self._hear("SCREE_GRID", lambda data: grid_of_message(grid_t.decode(data)), self._take_grid)
-        self._hear("SCREE_HEALTH", health_t.decode, self._take_health)
+        self._hear("SCREE_OBSTACLES", lambda data: list_of_message(decode_list(data)), self._take_list)
+        self._hear("SCREE_GRID", lambda data: grid_of_message(decode_grid(data)), self._take_grid)
+        self._hear("SCREE_HEALTH", decode_health, self._take_health)
         self._thread = threading.Thread(target=self._listen, name="scree", daemon=True)
         self._thread.start()
 
