@@ -1,10 +1,12 @@
-#include "black_box.hpp"
+#include "app/black_box.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include "scree/core/nanoseconds.hpp"
 #include "unit/temporary_folder.hpp"

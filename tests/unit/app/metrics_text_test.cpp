@@ -1,4 +1,4 @@
-#include "metrics_text.hpp"
+#include "app/metrics_text.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -36,7 +36,7 @@ void mark(const std::string& config) {
   if (!(std::ofstream(file) << "mark\n").flush()) {
     throw Failure("cannot write in " + folder.string() + ": is it there, and may you? (sudo)");
   }
-  constexpr auto kPatience = std::chrono::seconds(5), kPause = std::chrono::milliseconds(50);
+  constexpr std::chrono::milliseconds kPatience{5000}, kPause{50};
   const auto end = std::chrono::steady_clock::now() + kPatience;
   std::error_code none;
   while (fs::exists(file, none)) {
