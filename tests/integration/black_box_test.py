@@ -26,6 +26,13 @@ class BlackBoxTest(LiveDaemonTest):
         self.addCleanup(self.player.stop)
         self.say("health ok")
 
+    def wait_for_lists(self, count):
+        end = time.monotonic() + PATIENCE
+        wanted = len(self.lists.lines) + count
+        while len(self.lists.lines) < wanted:
+            self.assertLess(time.monotonic(), end, "no more lists came")
+            time.sleep(0.05)
+
     def log_of(self, reason):
         """The only closed log of that reason, when it is there."""
         end = time.monotonic() + PATIENCE
@@ -42,8 +49,7 @@ class BlackBoxTest(LiveDaemonTest):
 
     def test_a_mark_a_crash_and_blindness_are_closed_and_reported(self):
         self.start_all()
-        at = len(self.lists.lines)
-        self.lists.first(lambda line: True, at + 20)
+        self.wait_for_lists(20)
         marked = self.done(self.scree, "mark", "--config", self.config).stdout.strip()
         self.assertEqual(marked, self.log_of("mark"))
         lists, healths = self.watched(marked)
@@ -56,7 +62,7 @@ class BlackBoxTest(LiveDaemonTest):
         report = self.done(self.scree, "report", marked, "--out", self.path("report.html")).stdout
         self.assertIn(f"{len(lists)} lists", report)
 
-        self.lists.first(lambda line: True, len(self.lists.lines) + 10)
+        self.wait_for_lists(10)
         self.daemon.kill()
         self.daemon.wait(PATIENCE)
         self.daemon = self.start(self.screed, "--config", self.config)
@@ -72,7 +78,7 @@ class BlackBoxTest(LiveDaemonTest):
 
     def test_packets_are_kept_where_that_is_asked_for(self):
         self.start_all("packets = true\n")
-        self.lists.first(lambda line: True, len(self.lists.lines) + 20)
+        self.wait_for_lists(20)
         marked = self.done(self.scree, "mark", "--config", self.config).stdout.strip()
         # Its packets decode as a capture's: a turn has 75 of them.
         log = self.path("packets.lcm")
