@@ -43,9 +43,17 @@ function placed(p, q, x, y, z) {
 const wordOf = (obstacle) => obstacle.kind < 0 ? 'hole' : obstacle.moves ? 'mover' : 'rock';
 const distance = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]);
 
+/** Of base64. */
+function bytesOf(text) {
+  if (Uint8Array.fromBase64) return Uint8Array.fromBase64(text);
+  const binary = atob(text);
+  const bytes = new Uint8Array(binary.length);
+  for (let i = 0; i < bytes.length; ++i) bytes[i] = binary.charCodeAt(i);
+  return bytes;
+}
+
 async function inflated(text) {
-  const packed = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
-  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('deflate'));
+  const stream = new Blob([bytesOf(text)]).stream().pipeThrough(new DecompressionStream('deflate'));
   return new Response(stream).arrayBuffer();
 }
 

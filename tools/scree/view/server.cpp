@@ -54,26 +54,7 @@ std::string refusal(const ServerOptions& options, const httplib::Request& reques
   return {};
 }
 
-}  // namespace
-
-struct ViewServer::Running {
-  httplib::Server server;
-  std::thread thread;
-  Hub& hub;
-
-  explicit Running(Hub& the_hub) : hub(the_hub) {}
-  ~Running() {
-    hub.close();
-    server.stop();
-    if (thread.joinable()) thread.join();
-  }
-  Running(const Running&) = delete;
-  Running& operator=(const Running&) = delete;
-};
-
-ViewServer::ViewServer(const ServerOptions& options, Hub& hub, std::string first)
-    : running_(std::make_unique<Running>(hub)) {
-  httplib::Server& server = running_->server;
+void set_up(httplib::Server& server) {
   server.new_task_queue = [] { return new httplib::ThreadPool(kViewers + 2); };
   server.set_keep_alive_max_count(1);
   // The library would share a port with another program.
@@ -81,6 +62,10 @@ ViewServer::ViewServer(const ServerOptions& options, Hub& hub, std::string first
     const int yes = 1;
     setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
   });
+}
+
+void set_routes(httplib::Server& server, const ServerOptions& options, Hub& hub,
+                std::string first) {
   server.set_pre_routing_handler(
       [options](const httplib::Request& request, httplib::Response& response) {
         const std::string why = refusal(options, request);
@@ -108,13 +93,41 @@ ViewServer::ViewServer(const ServerOptions& options, Hub& hub, std::string first
           return sink.write(text.data(), text.size());
         });
   });
-  const int port =
-      options.port == 0 ? server.bind_to_any_port(options.address.c_str()) : options.port;
-  if (options.port != 0 ? !server.bind_to_port(options.address.c_str(), port) : port <= 0) {
-    throw Failure(
-        fmt::format("cannot listen on {} port {}: is it taken? --port chooses another one",
-                    options.address, options.port));
+}
+
+/// The port that it listens on. Throws Failure.
+int bind(httplib::Server& server, const ServerOptions& options) {
+  const char* const address = options.address.c_str();
+  const bool takes_any = options.port == 0;
+  const int port = takes_any ? server.bind_to_any_port(address) : options.port;
+  if (port > 0 && (takes_any || server.bind_to_port(address, port))) return port;
+  throw Failure(fmt::format("cannot listen on {} port {}: is it taken? --port chooses another one",
+                            options.address, options.port));
+}
+
+}  // namespace
+
+struct ViewServer::Running {
+  httplib::Server server;
+  std::thread thread;
+  Hub& hub;
+
+  explicit Running(Hub& the_hub) : hub(the_hub) {}
+  ~Running() {
+    hub.close();
+    server.stop();
+    if (thread.joinable()) thread.join();
   }
+  Running(const Running&) = delete;
+  Running& operator=(const Running&) = delete;
+};
+
+ViewServer::ViewServer(const ServerOptions& options, Hub& hub, std::string first)
+    : running_(std::make_unique<Running>(hub)) {
+  httplib::Server& server = running_->server;
+  set_up(server);
+  set_routes(server, options, hub, std::move(first));
+  const int port = bind(server, options);
   running_->thread = std::thread([&server] { server.listen_after_bind(); });
   const bool is_ipv6 = options.address.find(':') != std::string::npos;
   url_ = fmt::format("http://{}:{}/{}", is_ipv6 ? "[" + options.address + "]" : options.address,
