@@ -5,6 +5,7 @@ import os
 import shutil
 import sys
 
+from browser import Page
 from programs import ProgramTest, main
 
 SCREE, SOURCE = sys.argv[1:3]
@@ -54,6 +55,32 @@ class PythonPackageTest(ProgramTest):
     def test_fleet(self):
         self.needs("distributed", "pyarrow")
         self.run_tests("test_fleet.py")
+
+    def test_the_page_of_a_fleet_in_the_browser(self):
+        self.needs("distributed", "pyarrow", "playwright")
+        site = self.installed()
+        environment = {**os.environ, "PYTHONPATH": site}
+        for seed in ("1", "2"):
+            self.done(SCREE, "simulate", self.path(f"drives/drive{seed}"), "--seconds", "2", "--scene", "easy", "--seed", seed)
+        os.mkdir(self.path("drives/broken"))
+        self.write("drives/broken/lidar.pcap", "nothing")
+        page_file = self.path("page.html")
+        for arguments in (["run", self.path("drives"), "--out", self.path("out"), "--workers", "1"],
+                          ["report", self.path("out"), page_file]):  # fmt: skip
+            command = [sys.executable, "-m", "scree.fleet_commands", *arguments, "--scree", SCREE]
+            self.done(*command, env=environment, cwd=self.folder)
+        page = Page(self, f"file://{page_file}")
+        self.assertIn("failed: ", page.text("tbody tr:first-child"))
+        scores = "[...document.querySelectorAll('tbody tr')].map((row) => Number(row.cells[1].textContent)).filter((x) => x)"
+        self.assertEqual(page.of(scores), sorted(page.of(scores)))
+        for column in range(1, 10):
+            page.click(f"th:nth-child({column})")
+        page.click("th:nth-child(2)")  # once more: the other way round
+        self.assertEqual(page.of(scores), sorted(page.of(scores), reverse=True))
+        page.click("tbody a")
+        page.page.wait_for_selector("#map")
+        page.wait_for("document.body.dataset.ready === 'yes' && document.getElementById('figures').textContent.includes('F1')")
+        self.assertEqual(page.complaints, [])
 
     def test_types_and_style(self):
         self.needs("mypy", "ruff", "foxglove", "rosbags")

@@ -124,7 +124,7 @@ HeightGrid HeightRaster::grid(std::size_t most_cells) const {
   }
   int shift = 0;
   const auto cells = [&](std::int32_t low, std::int32_t high) {
-    return static_cast<std::size_t>((high >> shift) - (low >> shift) + 1);
+    return static_cast<std::size_t>(std::int64_t{high >> shift} - (low >> shift) + 1);
   };
   while (cells(x0, x1) * cells(y0, y1) > most_cells) ++shift;
   HeightGrid grid;
