@@ -19,9 +19,9 @@
 namespace scree {
 namespace {
 
-constexpr std::size_t kMessages = 24;               // a second of lists and grids
-constexpr std::size_t kLongestMessage = 64 * 1024;  // longer ones make room for themselves
-constexpr std::size_t kPackets = 512;               // two thirds of a second
+constexpr std::size_t kMessages = 24;            // a second of lists and grids
+constexpr std::size_t kLongestMessage = 65'536;  // longer ones make room for themselves
+constexpr std::size_t kPackets = 512;            // two thirds of a second
 constexpr std::size_t kLongestPacket = 2048;
 constexpr std::chrono::milliseconds kPause{50};
 
@@ -92,18 +92,15 @@ void Keeper::run() {
   if (box_) box_->close("end", wall_ns());
 }
 
-bool Keeper::drain(Pool& pool) {
-  bool has_any = false;
+void Keeper::drain(Pool& pool) {
   while (KeptMessage* const message = pool.pop()) {
     take(*message);
     pool.release(message);
-    has_any = true;
   }
   if (const std::uint64_t dropped = dropped_; dropped >= 10 * dropped_said_ + 1) {
     spdlog::warn("{} messages found no room in the black box: its disk is slow", dropped);
     dropped_said_ = dropped;
   }
-  return has_any;
 }
 
 void Keeper::take(const KeptMessage& message) {

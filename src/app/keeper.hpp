@@ -46,7 +46,7 @@ private:
   Keeper(std::optional<BlackBox> box, std::string metrics_file, bool keeps_packets);
   static bool fill(Pool& pool, const char* channel, std::span<const std::uint8_t> bytes);
   void run();
-  bool drain(Pool& pool);
+  void drain(Pool& pool);
   void take(const KeptMessage& message);
   void take_health(const KeptMessage& message);
   void write_metrics(const std::string& text);
