@@ -10,6 +10,7 @@
 #include "detector_worker.hpp"
 #include "encoder_reader.hpp"
 #include "imu_reader.hpp"
+#include "keeper.hpp"
 #include "lidar_reader.hpp"
 #include "publisher_worker.hpp"
 #include "real_time.hpp"
@@ -30,15 +31,17 @@ std::size_t max_obstacles(const Settings& settings) {
 class ThreadedDaemon final : public Daemon {
 public:
   ThreadedDaemon(const Settings& settings, SweepProcessor process, SyncBuffer* sensors,
-                 const RobotLines& lines, LidarPorts ports, Publisher publisher)
+                 const RobotLines& lines, LidarPorts ports, Publisher publisher,
+                 std::unique_ptr<Keeper> keeper)
       : sensors_(sensors),
+        keeper_(std::move(keeper)),
         sweeps_(kSweeps, [] { return TimedSweep(); }),
         lists_(kLists, [&] { return TimedObstacleList(max_obstacles(settings)); }),
-        lidar_(settings.lidar, std::move(ports), lines.pps, sweeps_),
+        lidar_(settings.lidar, std::move(ports), lines.pps, sweeps_, keeper_.get()),
         detector_(std::move(process), sensors, settings.map.wait, sweeps_, lists_),
         publisher_(
             settings, lines, std::move(publisher), lists_, [this] { return collect_status(); },
-            watchdog_) {
+            watchdog_, keeper_.get()) {
     if (sensors_ != nullptr) {
       if (!settings.imu.device.empty()) {
         imu_.emplace(settings.imu, *sensors_);
@@ -110,6 +113,7 @@ private:
   }
 
   SyncBuffer* sensors_;
+  std::unique_ptr<Keeper> keeper_;  // ends after those that it keeps from
   SweepPool sweeps_;
   ObstacleListPool lists_;
   ThreadWatchdog watchdog_;
@@ -129,12 +133,15 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings, SweepPro
   if (!ports) return tl::make_unexpected(ports.error());
   auto publisher = Publisher::open(settings.lcm.url, max_obstacles(settings));
   if (!publisher) return tl::make_unexpected(publisher.error());
+  auto keeper = Keeper::start(settings);
+  if (!keeper) return tl::make_unexpected(keeper.error());
   spdlog::info("listening on {}, UDP port {} for data and {} for position packets, from {}",
                settings.lidar.address, ports->data.port(), ports->position.port(),
                settings.lidar.sender.empty() ? "any sender" : settings.lidar.sender);
   spdlog::info("publishing on {}", settings.lcm.url);
   return std::make_unique<ThreadedDaemon>(settings, std::move(process), sensors, lines,
-                                          std::move(*ports), std::move(*publisher));
+                                          std::move(*ports), std::move(*publisher),
+                                          std::move(*keeper));
 }
 
 }  // namespace scree

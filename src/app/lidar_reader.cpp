@@ -5,6 +5,7 @@
 #include <iterator>
 #include <utility>
 
+#include "keeper.hpp"
 #include "scree/clock/clocks.hpp"
 #include "scree/core/nanoseconds.hpp"
 #include "scree/drivers/velodyne/position_packet.hpp"
@@ -27,10 +28,11 @@ Result<LidarPorts> LidarPorts::open(const LidarSettings& settings) {
 }
 
 LidarReader::LidarReader(const LidarSettings& settings, LidarPorts ports, RobotLines::Pulses pps,
-                         SweepPool& sweeps)
+                         SweepPool& sweeps, Keeper* keeper)
     : ports_(std::move(ports)),
       pps_(std::move(pps)),
       sweeps_(sweeps),
+      keeper_(keeper),
       stream_(settings, [this](Sweep& sweep) { push(sweep); }) {}
 
 void LidarReader::run() {
@@ -69,6 +71,7 @@ void LidarReader::read_data() {
     status_.sender = datagram->sender;
     status_.datagram_size = static_cast<std::uint32_t>(datagram->bytes.size());
     status_.last_datagram_ns = steady_ns();
+    if (keeper_ != nullptr && is_data) keeper_->put_packet(datagram->bytes);
     stream_.take(datagram->bytes, arrival_ns_);
   }
   status_.lidar = stream_.counters();

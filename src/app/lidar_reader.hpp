@@ -17,6 +17,8 @@
 
 namespace scree {
 
+class Keeper;
+
 /// The lidar's two ports, bound.
 struct LidarPorts {
   UdpReceiver data, position;
@@ -30,7 +32,7 @@ struct LidarPorts {
 class LidarReader {
 public:
   LidarReader(const LidarSettings& settings, LidarPorts ports, RobotLines::Pulses pps,
-              SweepPool& sweeps);
+              SweepPool& sweeps, Keeper* keeper = nullptr);
 
   /// Returns after stop() was called from another thread.
   void run();
@@ -51,6 +53,7 @@ private:
   RobotLines::Pulses pps_;
   std::int64_t pps_tried_ns_ = 0;
   SweepPool& sweeps_;
+  Keeper* keeper_;  // gets the packets; null: nobody does
   HostClock clock_;
   velodyne::LidarStream stream_;
   LidarStatus status_;

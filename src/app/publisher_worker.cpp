@@ -5,6 +5,7 @@
 #include <chrono>
 #include <utility>
 
+#include "keeper.hpp"
 #include "page_faults.hpp"
 #include "scree/clock/clocks.hpp"
 #include "scree/core/nanoseconds.hpp"
@@ -24,11 +25,12 @@ std::int64_t count(std::uint64_t value) {
 
 PublisherWorker::PublisherWorker(const Settings& settings, const RobotLines& lines,
                                  Publisher publisher, ObstacleListPool& lists, GetStatus get_status,
-                                 const ThreadWatchdog& threads)
+                                 const ThreadWatchdog& threads, Keeper* keeper)
     : publisher_(std::move(publisher)),
       lists_(lists),
       get_status_(std::move(get_status)),
       threads_(threads),
+      keeper_(keeper),
       outputs_(settings.stop, lines),
       watch_(settings, steady_ns()),
       last_health_ns_(steady_ns()) {
@@ -76,12 +78,19 @@ void PublisherWorker::publish(TimedObstacleList& timed) {
   const std::int64_t now_ns = steady_ns(), latency_ns = now_ns - timed.arrival_ns;
   statistics_.record(latency_ns, timed.detector_ns, timed.report);
   ++(is_taken ? health_.lists_published : health_.lists_failed);
+  keep(kObstaclesChannel);
   if (!is_taken) return;
   outputs_.toggle_heartbeat();
   if (latency_ns <= HealthWatch::kOldSweep) last_list_ns_ = now_ns;
   if (timed.grid.empty()) return;
   timed.grid.stamp_ns = timed.list.stamp_ns;
   if (!publisher_.publish(timed.grid)) ++health_.lists_failed;
+  keep(kGridChannel);
+}
+
+/// What was published last, also where LCM did not take it.
+void PublisherWorker::keep(const char* channel) {
+  if (keeper_ != nullptr) keeper_->put(channel, publisher_.last());
 }
 
 void PublisherWorker::update_health(std::int64_t now_ns) {
@@ -119,6 +128,7 @@ void PublisherWorker::publish_health(std::int64_t now_ns) {
   fill_counts();
   fill_computer();
   if (!publisher_.publish(health_)) spdlog::warn("LCM does not take the health message");
+  keep(kHealthChannel);
   last_health_ns_ = now_ns;
 }
 

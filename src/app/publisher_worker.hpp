@@ -20,6 +20,8 @@
 
 namespace scree {
 
+class Keeper;
+
 /// Publishes obstacle lists and health, drives the output lines and writes the log. run() is the
 /// work of a thread. Health goes out once a second, and at once when something in it changes.
 class PublisherWorker {
@@ -29,8 +31,10 @@ public:
 
   /// Keeps references to the pool and to the watchdog.
   /// @param threads whose page faults health reports
+  /// @param keeper gets what is published; null: nobody does
   PublisherWorker(const Settings& settings, const RobotLines& lines, Publisher publisher,
-                  ObstacleListPool& lists, GetStatus get_status, const ThreadWatchdog& threads);
+                  ObstacleListPool& lists, GetStatus get_status, const ThreadWatchdog& threads,
+                  Keeper* keeper = nullptr);
 
   /// Returns after stop() was called from another thread. The last health says that the robot is
   /// blind, and the stop line is set once more.
@@ -45,6 +49,7 @@ public:
 
 private:
   void publish(TimedObstacleList& timed);
+  void keep(const char* channel);
   void update_health(std::int64_t now_ns);
   bool drive_outputs(std::int64_t now_ns);
   void publish_health(std::int64_t now_ns);
@@ -56,6 +61,7 @@ private:
   ObstacleListPool& lists_;
   GetStatus get_status_;
   const ThreadWatchdog& threads_;
+  Keeper* keeper_;
   TripleBuffer<StopSettings> zone_;
   HostClock clock_;
   OutputLines outputs_;

@@ -138,4 +138,32 @@ void to_message(const ObstacleGrid& grid, grid_t& message) {
   std::ranges::copy(grid.ground, message.ground.begin());
 }
 
+bool from_message(const grid_t& message, ObstacleGrid& grid) {
+  constexpr auto kMost = static_cast<std::int32_t>(ObstacleGrid::kMostCells);
+  grid.clear();
+  const auto is_length = [](std::int32_t cells) { return cells >= 0 && cells <= kMost; };
+  if (!is_length(message.columns) || !is_length(message.rows)) return false;
+  if (message.columns * message.rows != message.cells) return false;
+  grid.pose.translation = to_vector(message.p);
+  grid.pose.rotation = {message.q[0], message.q[1], message.q[2], message.q[3]};
+  grid.origin = {message.origin[0], message.origin[1]};
+  const bool are_numbers = grid.pose.translation.allFinite() &&
+                           grid.pose.rotation.coeffs().allFinite() && grid.origin.allFinite();
+  if (!are_numbers || !(message.cell_size > 0) || !std::isfinite(message.cell_size)) return false;
+  grid.stamp_ns = message.stamp_ns;
+  grid.cell_size = message.cell_size;
+  grid.columns = static_cast<std::size_t>(message.columns);
+  grid.rows = static_cast<std::size_t>(message.rows);
+  for (std::size_t i = 0; i < grid.cells(); ++i) {
+    // A cell that nobody can place on the ground says nothing.
+    const bool is_known =
+        message.state[i] < kCellStates && message.ground[i] != ObstacleGrid::kNoGround;
+    grid.state.push_back(is_known ? static_cast<CellState>(message.state[i]) : CellState::unknown);
+    grid.ground.push_back(is_known && grid.state.back() != CellState::unknown
+                              ? message.ground[i]
+                              : ObstacleGrid::kNoGround);
+  }
+  return true;
+}
+
 }  // namespace scree

@@ -42,6 +42,7 @@ bool Publisher::send(const char* channel, const Message& message) {
   const auto size = static_cast<std::size_t>(message.getEncodedSize());
   if (encoded_.size() < size) encoded_.resize(size);
   const int encoded = message.encode(encoded_.data(), 0, static_cast<int>(size));
+  last_size_ = static_cast<std::size_t>(std::max(encoded, 0));
   return encoded >= 0 &&
          lcm_publish(lcm_.get(), channel, encoded_.data(), static_cast<unsigned int>(encoded)) == 0;
 }

@@ -5,8 +5,6 @@
 #include <optional>
 #include <set>
 
-#include "scoring/matching.hpp"
-
 namespace scree {
 namespace {
 
@@ -130,7 +128,8 @@ double ScoringResult::coverage() const {
   return entries == 0 ? 1 : static_cast<double>(covered) / static_cast<double>(entries);
 }
 
-void Scorer::add(const Truth& truth, std::span<const ObstacleList> lists) {
+void Scorer::add(const Truth& truth, std::span<const ObstacleList> lists,
+                 const OnComparison& on_comparison) {
   std::set<std::size_t> covered;
   std::map<int, Story> stories;
   std::vector<PosePair> poses;
@@ -144,6 +143,7 @@ void Scorer::add(const Truth& truth, std::span<const ObstacleList> lists) {
     covered.insert(*entry);
     const Comparison comparison = compare(truth, truth.visible[*entry], list);
     count(result_, comparison);
+    if (on_comparison) on_comparison(list, comparison);
     for (const auto& asked : comparison.asked) {
       stories[asked.obstacle->id].tell(asked, list.stamp_ns);
     }

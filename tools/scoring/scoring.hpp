@@ -2,11 +2,13 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <map>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "scoring/matching.hpp"
 #include "scoring/pose_error.hpp"
 #include "scoring/truth.hpp"
 #include "scree/learn/metrics.hpp"
@@ -74,8 +76,12 @@ struct ScoringResult {
 /// Scores lists of detections against truth, run by run.
 class Scorer {
 public:
+  using OnComparison = std::function<void(const ObstacleList&, const Comparison&)>;
+
   /// @param lists of one run, in time order. @pre truth as read_truth() lets it pass
-  void add(const Truth& truth, std::span<const ObstacleList> lists);
+  /// @param on_comparison called for each list that is scored
+  void add(const Truth& truth, std::span<const ObstacleList> lists,
+           const OnComparison& on_comparison = {});
   const ScoringResult& result() const { return result_; }
 
 private:

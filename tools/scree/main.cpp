@@ -19,11 +19,14 @@ void add_all(CLI::App& app) {
   scree::cli::add_evaluate(app);
   scree::cli::add_study(app);
   scree::cli::add_picture(app);
+  scree::cli::add_report(app);
   scree::cli::add_replay(app);
   scree::cli::add_slice(app);
   scree::cli::add_record(app);
   scree::cli::add_watch(app);
+  scree::cli::add_view(app);
   scree::cli::add_status(app);
+  scree::cli::add_mark(app);
   scree::cli::add_doctor(app);
   scree::cli::add_top(app);
   scree::cli::add_bench(app);

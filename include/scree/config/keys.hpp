@@ -156,6 +156,23 @@ void for_every_key(AnySettings& settings, Visit&& visit) {
       "edge of its cells: smaller shows narrower gaps; it has 128 x 128 at most, so smaller ones "
       "than map.search_reach / 64 reach less far");
 
+  table = "blackbox";
+  auto& blackbox = settings.blackbox;
+  key("folder", blackbox.folder, "", 0, 0,
+      "keep lists, grids and health of the latest past here, in files that are bounded, and close "
+      "them when something happens; /var/lib/scree/blackbox for the service; empty: nothing is "
+      "kept");
+  key("seconds", blackbox.seconds, "s", 6, 3600, "how much of the past is kept");
+  key("megabytes", blackbox.megabytes, "MB", 6, 100000, "... and how much of the disk at most");
+  key("keep", blackbox.keep, "", 1, 10000, "closed files that stay; older ones are removed");
+  key("packets", blackbox.packets, "", 0, 0,
+      "keep the lidar's packets too, 1 MB a second, so that what happened can be computed again");
+
+  table = "metrics";
+  key("file", settings.metrics.file, "", 0, 0,
+      "write health here once a second for the textfile collector of Prometheus' node_exporter, as "
+      "/var/lib/prometheus/node-exporter/scree.prom; empty: none");
+
   table = "memory";
   auto& memory = settings.memory;
   key("sweep_points", memory.sweep_points, "points", 2, 1 << 20,

@@ -289,6 +289,19 @@ struct LcmSettings {
   double grid_cell = 0.2;
 };
 
+/// What screed keeps of the latest past, in files.
+struct BlackBoxSettings {
+  std::string folder;  ///< empty: none
+  double seconds = 60;
+  int megabytes = 100;
+  int keep = 20;
+  bool packets = false;
+};
+
+struct MetricsSettings {
+  std::string file;  ///< empty: none
+};
+
 struct Settings {
   LidarSettings lidar;
   ImuSettings imu;
@@ -302,6 +315,8 @@ struct Settings {
   MapSettings map;
   TrackingSettings track;
   LcmSettings lcm;
+  BlackBoxSettings blackbox;
+  MetricsSettings metrics;
   MemorySettings memory;
 };
 

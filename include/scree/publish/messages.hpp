@@ -25,4 +25,8 @@ void make_room(grid_t& message);
 /// The LCM message of a grid. Allocates only when the message's vectors have to grow, as for lists.
 void to_message(const ObstacleGrid& grid, grid_t& message);
 
+/// The grid of an LCM message. Allocates nothing. False, and of no cell, where the message
+/// contradicts itself or holds what is no number.
+bool from_message(const grid_t& message, ObstacleGrid& grid);
+
 }  // namespace scree

@@ -6,6 +6,7 @@
 #include <scree/grid_t.hpp>
 #include <scree/health_t.hpp>
 #include <scree/obstacle_list_t.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,9 @@ public:
   bool publish(const ObstacleGrid& grid);
   bool publish(const health_t& health);
 
+  /// The message that was published last, as it was sent. Valid until the next one.
+  std::span<const std::uint8_t> last() const { return std::span(encoded_).first(last_size_); }
+
 private:
   struct Destroy {
     void operator()(lcm_t* lcm) const { lcm_destroy(lcm); }
@@ -44,6 +48,7 @@ private:
   obstacle_list_t list_{};
   grid_t grid_{};
   std::vector<std::uint8_t> encoded_;
+  std::size_t last_size_ = 0;
 };
 
 }  // namespace scree

@@ -59,10 +59,10 @@ void PipelineCapture::play(const std::function<void(const Sweep&)>& process) {
     setup.add(pipeline_.setup());
   });
   std::int64_t now_ns = 0;
-  velodyne::LidarStream stream(settings_.lidar, [&](Sweep& sweep) {
+  stream_.emplace(settings_.lidar, [&](Sweep& sweep) {
     if (!sweep.points.empty()) waiting.push(sweep, now_ns);
   });
-  lidar_.play(stream, {}, [&](std::int64_t arrival_ns) {
+  lidar_.play(*stream_, {}, [&](std::int64_t arrival_ns) {
     now_ns = arrival_ns;
     motion_.play_until(arrival_ns);
     waiting.process_ready(arrival_ns);
@@ -76,7 +76,7 @@ void PipelineCapture::play(const std::function<void(const Sweep&)>& process) {
   }
   waiting.process_all();
   motion_.finish();
-  report_capture(lidar_, stream);
+  report_capture(lidar_, *stream_);
   motion_.report(lidar_.span());
   for (const HostStep& step : steps_) {
     fmt::print(stderr, "scree: the host's clock was set by {:+.3f} s on the way: taken out\n",

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string_view>
 
 #include "read/lidar_capture.hpp"
@@ -21,7 +22,13 @@ public:
   /// Throws Failure.
   PipelineCapture(const std::filesystem::path& capture, const std::filesystem::path& config);
 
+  const Settings& settings() const { return settings_; }
   Pipeline& pipeline() { return pipeline_; }
+  /// What has come of the lidar so far. @pre play() was called
+  const velodyne::LidarStream& lidar() const { return *stream_; }
+  const MotionCapture& motion() const { return motion_; }
+  /// What the lidar's file holds. @pre play() has ended
+  TimeSpan span() const { return lidar_.span(); }
 
   /// Plays all of it as the daemon would hear it, then says on stderr what was refused or lost.
   /// Throws Failure when no packet of the lidar was accepted.
@@ -35,6 +42,7 @@ private:
   LidarCapture lidar_;
   Pipeline pipeline_;
   MotionCapture motion_;
+  std::optional<velodyne::LidarStream> stream_;
 };
 
 }  // namespace scree::cli

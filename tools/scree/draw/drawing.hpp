@@ -12,8 +12,9 @@ struct Colour {
   double red, green, blue, alpha = 1;
 };
 inline constexpr Colour kWhite{1, 1, 1}, kText{0.13, 0.13, 0.16}, kFaint{0.45, 0.45, 0.5};
-inline constexpr Colour kBlue{0.05, 0.25, 0.85};  ///< positive obstacles
-inline constexpr Colour kRed{0.85, 0.08, 0.08};   ///< negative ones
+// Two that nobody takes for one another who sees red and green alike.
+inline constexpr Colour kBlue{0.0, 0.447, 0.698};    ///< positive obstacles
+inline constexpr Colour kOrange{0.835, 0.369, 0.0};  ///< negative ones
 inline constexpr Colour kGridOnGround{0.30, 0.45, 0.60, 0.20};
 
 struct Rectangle {

@@ -3,10 +3,11 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
+
+#include "draw/height_raster.hpp"
 
 namespace scree::cli {
 namespace {
@@ -15,7 +16,6 @@ constexpr int kPageWidth = 1400, kPageHeight = 1120;
 constexpr Rectangle kGroundPlot{70, 90, 1000, 980};
 constexpr double kPanel = 1105;  // left end of the legend
 constexpr Colour kRobot{0.0, 0.5, 0.25};
-constexpr int kGreys = 48;
 
 /// The values between which all but a share of `outliers` at either end lie.
 std::pair<double, double> bulk(std::span<const float> values, double outliers) {
@@ -76,31 +76,28 @@ private:
   double middle_x_, middle_y_, pixels_per_metre_;
 };
 
-Colour grey(int level) {
-  const double share = static_cast<double>(level) / (kGreys - 1);
-  const double value = 0.80 - 0.80 * share;
-  return {value, value, value};
+Colour grey(float bright) {
+  return {bright, bright, bright};
 }
 
-void draw_points(Drawing& drawing, const View& view, const PointView& points, double low,
-                 double high) {
-  // The more points there are, the smaller they have to be.
-  const double size = std::clamp(3.0 - 0.4 * std::log10(1.0 + static_cast<double>(points.size())) -
-                                     (points.size() > 100000 ? 0.4 : 0.0),
-                                 0.7, 2.0);
-  std::array<std::vector<std::size_t>, kGreys> levels;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!std::isfinite(points.x[i] + points.y[i] + points.z[i])) continue;
-    const double share = (points.z[i] - low) / std::max(1e-6, high - low);
-    levels[static_cast<std::size_t>(std::clamp(share, 0.0, 1.0) * (kGreys - 1))].push_back(i);
-  }
-  for (int level = 0; level < kGreys; ++level) {
-    drawing.set(grey(level));
-    for (const std::size_t i : levels[static_cast<std::size_t>(level)]) {
-      cairo_rectangle(drawing.cairo(), view.across(points.y[i]) - size / 2,
-                      view.down(points.x[i]) - size / 2, size, size);
+/// The ground, lit; white where nothing is known.
+void draw_ground(Drawing& drawing, const View& view, const PointView& points) {
+  constexpr double kCell = 0.1;  // metres
+  constexpr std::size_t kMostCells = 4'000'000;
+  HeightRaster raster(kCell);
+  raster.add(points, Pose());
+  HeightGrid grid = raster.grid(kMostCells);
+  fill_gaps(grid, 2);
+  const std::vector<float> bright = hillshade(grid);
+  const double size = view.pixels(grid.cell) + 0.6;  // without seams
+  for (std::size_t row = 0; row < grid.rows; ++row) {
+    for (std::size_t column = 0; column < grid.columns; ++column) {
+      const float light = bright[row * grid.columns + column];
+      if (!std::isfinite(light)) continue;
+      const double x = grid.x + static_cast<double>(column + 1) * grid.cell;
+      const double y = grid.y + static_cast<double>(row + 1) * grid.cell;
+      drawing.fill({view.across(y), view.down(x), size, size}, grey(light));
     }
-    cairo_fill(drawing.cairo());
   }
 }
 
@@ -141,7 +138,7 @@ void draw_robot(Drawing& drawing, double x, double y) {
 
 void draw_outline(Drawing& drawing, const View& view, const Obstacle& obstacle) {
   cairo_t* cairo = drawing.cairo();
-  const Colour colour = obstacle.kind == ObstacleKind::positive ? kBlue : kRed;
+  const Colour colour = obstacle.kind == ObstacleKind::positive ? kBlue : kOrange;
   for (const Eigen::Vector2d& corner : outline_of(obstacle)) {
     cairo_line_to(cairo, view.across(corner.y()), view.down(corner.x()));
   }
@@ -191,7 +188,7 @@ int draw_labels(Drawing& drawing, const View& view, const FixedVector<Obstacle>&
       continue;
     }
     taken.push_back(place);
-    const Colour colour = obstacle.kind == ObstacleKind::positive ? kBlue : kRed;
+    const Colour colour = obstacle.kind == ObstacleKind::positive ? kBlue : kOrange;
     const double to_x = std::clamp(middle_x, place.x, place.x + place.width);
     const double to_y = std::clamp(middle_y, place.y, place.y + place.height);
     if (std::hypot(to_x - std::clamp(to_x, box.x, box.x + box.width),
@@ -219,7 +216,7 @@ void draw_legend(Drawing& drawing, const View& view, const PointView& points,
     drawing.text(kPanel + 40, y, text, 16, kText);
   };
   entry(kBlue, fmt::format("positive (rock): {}", positives));
-  entry(kRed, fmt::format("negative (hole): {}", negatives));
+  entry(kOrange, fmt::format("negative (hole): {}", negatives));
   y += 28;
   drawing.text(kPanel, y, "id: metres above the ground,", 14, kFaint);
   drawing.text(kPanel, y + 18, "below zero for the depth of a hole", 14, kFaint);
@@ -236,19 +233,15 @@ void draw_legend(Drawing& drawing, const View& view, const PointView& points,
   drawing.text(kPanel + 40, y + 34, "looks up (x), y is to the left", 16, kText);
 
   y += 84;
-  drawing.text(kPanel, y, fmt::format("{} points", points.size()), 17, kText, true);
-  y += 16;
-  const double bar = 220;
-  for (int level = 0; level < kGreys; ++level) {
-    drawing.fill({kPanel, y + bar - (level + 1) * bar / kGreys, 30, bar / kGreys + 0.5},
-                 grey(level));
-  }
-  drawing.outline({kPanel, y, 30, bar}, kFaint, 1);
-  drawing.text(kPanel + 40, y + 13, fmt::format("{:.1f} m and above", high), 15, kText);
-  drawing.text(kPanel + 40, y + bar / 2 + 5, "height (z)", 15, kFaint);
-  drawing.text(kPanel + 40, y + bar, fmt::format("{:.1f} m and below", low), 15, kText);
+  drawing.text(kPanel, y, "Ground", 17, kText, true);
+  drawing.text(kPanel, y + 28, fmt::format("{} points", points.size()), 15, kText);
+  drawing.text(kPanel, y + 50, fmt::format("z from {:.1f} to {:.1f} m", low, high), 15, kText);
+  drawing.text(kPanel, y + 78, "lit from the upper left;", 14, kFaint);
+  drawing.text(kPanel, y + 96, "what is deeper than the ground", 14, kFaint);
+  drawing.text(kPanel, y + 114, "around it is darker", 14, kFaint);
+  drawing.text(kPanel, y + 132, "white: unknown", 14, kFaint);
 
-  y += bar + 60;
+  y += 180;
   const double step = view.grid();
   const double scale = view.pixels(step);
   drawing.text(kPanel, y, "Scale", 17, kText, true);
@@ -274,7 +267,7 @@ Drawing draw_top_view(const PointView& points, const FixedVector<Obstacle>& obst
                "y [m]", 14, kFaint);
 
   drawing.clip(kGroundPlot);
-  draw_points(drawing, view, points, low, high);
+  draw_ground(drawing, view, points);
   for (const Obstacle& obstacle : obstacles) draw_outline(drawing, view, obstacle);
   const double robot_x = view.across(0), robot_y = view.down(0);
   draw_robot(drawing, robot_x, robot_y);

@@ -26,6 +26,11 @@ public:
   /// at other times than the lidar's.
   void report(const TimeSpan& lidar) const;
 
+  bool has_imu() const { return imu_.has_value(); }
+  bool has_encoder() const { return encoder_.has_value(); }
+  const xsens::ImuCounters& imu() const { return imu_stream_.counters(); }
+  const encoder::EncoderCounters& encoder() const { return encoder_stream_.counters(); }
+
 private:
   EncoderSettings encoder_settings_;  // with what their DBC file says
   std::optional<ImuCapture> imu_;

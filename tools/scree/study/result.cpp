@@ -26,7 +26,7 @@ void draw(PanelPage& page, int column, const Detector& detector, const CloudWorl
                  asked.is_right() ? 2 : 3.5);
   }
   for (const Obstacle& obstacle : list.obstacles) {
-    view.box(obstacle, obstacle.kind == ObstacleKind::positive ? kBlue : kRed, 2);
+    view.box(obstacle, obstacle.kind == ObstacleKind::positive ? kBlue : kOrange, 2);
   }
   for (const auto& asked : comparison.asked) {
     if (asked.is_right()) continue;
@@ -78,7 +78,7 @@ void study_result(const StudyTask& task) {
     table += '\n';
   }
   page.legend(kBlue, "found as positive");
-  page.legend(kRed, "found as negative");
+  page.legend(kOrange, "found as negative");
   page.legend(kGreen, "true outline, found rightly");
   page.legend(kWrong, "true outline, missed; \"no rock\": a false positive");
   write_table(task, "result.csv", table);

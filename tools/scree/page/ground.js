@@ -1,0 +1,125 @@
+'use strict';
+// The hillshade, as draw/height_raster.cpp draws it: lit from the upper left, deeper is darker.
+
+/** The mean within `radius` cells of each cell; NaN where nothing is known. */
+function smoothed(heights, columns, rows, radius) {
+  const stride = columns + 1;
+  const sums = new Float64Array(stride * (rows + 1));
+  const counts = new Int32Array(stride * (rows + 1));
+  for (let row = 0; row < rows; ++row) {
+    let [sum, count] = [0, 0];
+    for (let column = 0; column < columns; ++column) {
+      const height = heights[row * columns + column];
+      if (height === height) { sum += height; ++count; }
+      const at = (row + 1) * stride + column + 1;
+      sums[at] = sums[at - stride] + sum;
+      counts[at] = counts[at - stride] + count;
+    }
+  }
+  const means = new Float32Array(columns * rows);
+  for (let row = 0; row < rows; ++row) {
+    const [below, above] = [Math.max(0, row - radius) * stride, Math.min(rows, row + radius + 1) * stride];
+    for (let column = 0; column < columns; ++column) {
+      const [left, right] = [Math.max(0, column - radius), Math.min(columns, column + radius + 1)];
+      const count = counts[above + right] - counts[above + left] - counts[below + right] + counts[below + left];
+      const sum = sums[above + right] - sums[above + left] - sums[below + right] + sums[below + left];
+      means[row * columns + column] = count > 0 ? sum / count : NaN;
+    }
+  }
+  return means;
+}
+
+/** Brightness of each cell, 0 to 1; NaN where nothing is known. */
+function hillshade(heights, columns, rows, cell) {
+  const around = smoothed(heights, columns, rows, Math.max(1, Math.round(0.8 / cell)));
+  const bright = new Float32Array(columns * rows).fill(NaN);
+  for (let row = 0; row < rows; ++row) {
+    const [up, down] = [row + 1 < rows ? columns : 0, row > 0 ? columns : 0];
+    for (let column = 0; column < columns; ++column) {
+      const i = row * columns + column;
+      const height = heights[i];
+      if (height !== height) continue;
+      const of = (k) => heights[k] === heights[k] ? heights[k] : height;
+      const slopeX = (of(column + 1 < columns ? i + 1 : i) - of(column > 0 ? i - 1 : i)) / (2 * cell);
+      const slopeY = (of(i + up) - of(i - down)) / (2 * cell);
+      const lit = (-0.5 * slopeX - 0.5 * slopeY + 0.7071) / Math.sqrt(1 + slopeX * slopeX + slopeY * slopeY);
+      const relief = Math.min(0.15, Math.max(-0.5, 0.9 * (height - around[i])));
+      bright[i] = Math.min(1, Math.max(0.05, 0.2 + 0.85 * Math.max(0, lit) + relief));
+    }
+  }
+  return bright;
+}
+
+/** A picture of brightness, x up and y to the left. */
+function groundImage(bright, columns, rows) {
+  const canvas = document.createElement('canvas');
+  canvas.width = rows;
+  canvas.height = columns;
+  const context = canvas.getContext('2d');
+  const image = context.createImageData(rows, columns);
+  const pixels = new Uint32Array(image.data.buffer);
+  for (let row = 0; row < rows; ++row) {
+    for (let column = 0; column < columns; ++column) {
+      const value = bright[row * columns + column];
+      if (value !== value) continue;
+      const grey = Math.round(255 * value);
+      pixels[(columns - 1 - column) * rows + rows - 1 - row] = 0xff000000 | grey << 16 | grey << 8 | grey;
+    }
+  }
+  context.putImageData(image, 0, 0);
+  return canvas;
+}
+
+/** The ground of a report, ready to be drawn. */
+function drawnGround(ground) {
+  const { x, y, cell, columns, rows, heights } = ground;
+  const bright = hillshade(heights, columns, rows, cell);
+  return { x, y, width: columns * cell, height: rows * cell, image: groundImage(bright, columns, rows) };
+}
+
+/** The ground that grids tell while they come: as many metres around the robot as `reach`. */
+class LiveGround {
+  constructor(cell, reach = 60) {
+    this.cell = cell;
+    this.size = Math.round(2 * reach / cell);
+    this.heights = null;
+  }
+
+  /** Moves the area so that the robot is well inside; what is known stays. */
+  center(x, y) {
+    const half = this.size / 2;
+    const [column, row] = [Math.round(x / this.cell) - half, Math.round(y / this.cell) - half];
+    if (this.heights && Math.abs(column - this.column) < half / 2 && Math.abs(row - this.row) < half / 2) return;
+    const heights = new Float32Array(this.size * this.size).fill(NaN);
+    if (this.heights) {
+      for (let r = 0; r < this.size; ++r) {
+        const from = r + row - this.row;
+        if (from < 0 || from >= this.size) continue;
+        for (let c = 0; c < this.size; ++c) {
+          const at = c + column - this.column;
+          if (at >= 0 && at < this.size) heights[r * this.size + c] = this.heights[from * this.size + at];
+        }
+      }
+    }
+    [this.heights, this.column, this.row] = [heights, column, row];
+  }
+
+  add(grid) {
+    this.center(grid.pose.p[0], grid.pose.p[1]);
+    const [column, row] = [Math.round(grid.origin[0] / this.cell), Math.round(grid.origin[1] / this.cell)];
+    let next = 0;
+    grid.state.forEach((state, i) => {
+      if (state === 0) return;
+      const height = grid.pose.p[2] + grid.ground[next++] / 100;
+      const [c, r] = [column + i % grid.columns - this.column, row + Math.floor(i / grid.columns) - this.row];
+      if (c >= 0 && c < this.size && r >= 0 && r < this.size) this.heights[r * this.size + c] = height;
+    });
+  }
+
+  drawn() {
+    return drawnGround({
+      x: this.column * this.cell, y: this.row * this.cell, cell: this.cell, columns: this.size, rows: this.size,
+      heights: this.heights,
+    });
+  }
+}
