@@ -3,7 +3,11 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <limits>
+#include <new>
+#include <stdexcept>
 #include <utility>
+
+#include "memory_cap.hpp"
 
 namespace scree {
 
@@ -28,7 +32,14 @@ Result<Detector> make_detector(const DetectSettings& settings, const DetectorLim
                                const std::filesystem::path& config_file) {
   auto network = load_network(settings, config_file);
   if (!network) return tl::make_unexpected(network.error());
-  return Detector(settings, limits, *std::move(network));
+  const MemoryCap cap;
+  try {
+    return Detector(settings, limits, *std::move(network));
+  } catch (const std::bad_alloc&) {
+    return fail(cap.sentence());
+  } catch (const std::length_error&) {  // more than can be addressed
+    return fail(cap.sentence());
+  }
 }
 
 Result<Networks> load_networks(const Settings& settings, const std::filesystem::path& config_file) {
@@ -46,7 +57,14 @@ Result<Pipeline> Pipeline::make(const Settings& settings,
                                 const std::filesystem::path& config_file) {
   auto networks = load_networks(settings, config_file);
   if (!networks) return tl::make_unexpected(networks.error());
-  return Pipeline(settings, *networks);
+  const MemoryCap cap;
+  try {
+    return Pipeline(settings, *networks);
+  } catch (const std::bad_alloc&) {
+    return fail(cap.sentence());
+  } catch (const std::length_error&) {  // more than can be addressed
+    return fail(cap.sentence());
+  }
 }
 
 Pipeline::Pipeline(const Settings& settings, const Networks& networks)

@@ -246,6 +246,7 @@ Result<void> CanLogWriter::close() {
 
 Result<void> CanLogWriter::result() const {
   if (!stream_) return fail(fmt::format("cannot write {}: the disk may be full", name_));
+  if (!std::filesystem::exists(name_)) return fail(name_ + " is gone: was its folder removed?");
   return {};
 }
 

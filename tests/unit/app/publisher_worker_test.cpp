@@ -30,7 +30,7 @@ protected:
           lists_before_grid_ = lists_received_;
           grid_ = message;
         });
-    auto publisher = Publisher::open(url, 1);
+    auto publisher = Publisher::open(url);
     EXPECT_TRUE(subscriber && publisher);
     subscriber_ = std::move(*subscriber);
     lines_.heartbeat = [this](bool) {
@@ -110,10 +110,10 @@ TEST_F(PublisherWorkerTest, AGridGoesOutAfterItsListAndWithItsStamp) {
 }
 
 TEST_F(PublisherWorkerTest, AnOldListGoesOutButIsNoSight) {
-  push_list(HealthWatch::kOldSweep + kSecond);
+  push_list(HealthWatch::kOldData + kSecond);
   ASSERT_TRUE(until([&] { return lists_received_ == 1 && health_.lists_published == 1; }));
   EXPECT_EQ(health_.state, health_t::BLIND);
-  EXPECT_EQ(health_.reason, "no sweep has got through the detector yet");
+  EXPECT_EQ(health_.reason, "sweeps come, but no list of the last half second has gone out");
 }
 
 TEST_F(PublisherWorkerTest, HealthHasTheCountsOfTheOtherThreads) {
