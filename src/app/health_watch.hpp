@@ -32,10 +32,10 @@ struct DetectorStatus {
 ///
 /// The robot is blind unless packets of the lidar come and are understood (SensorWatch::kSilence)
 /// and have returns (kReturnsStop), they make whole turns (kTurnStops), the detector is not late
-/// (kDetectorStops) and lists of fresh data go out (kOldData). It is blind too where a setting is so wrong that
-/// the lists cannot be right; they go out all the same, for whoever looks for the mistake. Whatever
-/// stops is said within 300 ms when this is asked every 20 ms. Without IMU and encoder the robot
-/// sees less well, and is not blind.
+/// (kDetectorStops) and lists of fresh data go out (kOldData). It is blind too where a setting is
+/// so wrong that the lists cannot be right; they go out all the same, for whoever looks for the
+/// mistake. Whatever stops is said within 300 ms when this is asked every 20 ms. Without IMU and
+/// encoder the robot sees less well, and is not blind.
 class HealthWatch {
 public:
   // A VLP-16 turns at least 5 times a second (its manual, rotation speed: 300 to 1200 rpm), so that

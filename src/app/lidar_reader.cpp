@@ -64,8 +64,7 @@ void LidarReader::read_data() {
     const auto datagram = ports_.data.receive(buffer_);
     if (!datagram) break;
     // What waited while this process was paused is as old as the kernel says.
-    arrival_ns_ =
-        std::min(clock_.to_monotonic(datagram->arrival_ns, read_clocks()), steady_ns());
+    arrival_ns_ = std::min(clock_.to_monotonic(datagram->arrival_ns, read_clocks()), steady_ns());
     const bool is_data = datagram->bytes.size() == velodyne::kDataPacketSize;
     if (is_data && !status_.senders.takes(datagram->sender, arrival_ns_)) continue;
     status_.sender = datagram->sender;

@@ -12,8 +12,8 @@ std::uint64_t memory_taken();
 /// Bytes that it may still take: what the computer has left, and its limit (`ulimit -v`).
 std::uint64_t memory_left();
 
-/// As long as it lives, whoever asks for more memory than memory_left() gets std::bad_alloc. Without
-/// it Linux gives what it has not got, and kills some program when the memory is used.
+/// As long as it lives, whoever asks for more memory than memory_left() gets std::bad_alloc.
+/// Without it Linux gives what it has not got, and kills some program when the memory is used.
 class MemoryCap {
 public:
   MemoryCap();

@@ -78,10 +78,7 @@ void PipelineCapture::play(const std::function<void(const Sweep&)>& process) {
   motion_.finish();
   report_capture(lidar_, stream);
   motion_.report(lidar_.span());
-  for (const HostStep& step : steps_) {
-    fmt::print(stderr, "scree: the host's clock was set by {:+.3f} s on the way: taken out\n",
-               static_cast<double>(step.by_ns) * 1e-9);
-  }
+  say(steps_);
   for (const std::string& mistake : setup.sentences()) fmt::print(stderr, "scree: {}\n", mistake);
   warn_of_losses(pipeline_, waiting);
 }

@@ -35,7 +35,7 @@ CaptureEvents::CaptureEvents(const fs::path& capture, const Settings& settings)
     if (const auto can = can_file(capture)) can_.emplace(value_or_fail(CanLogReader::open(*can)));
   }
   if (!lidar_ && !imu_ && !can_) throw Failure(lidar.error().message);
-  if (lidar) steady_.fill(SteadyTime(find_host_steps(capture, settings.lidar)));
+  steady_.fill(SteadyTime(find_host_steps(capture, settings.lidar)));
   for (const Sensor sensor : {Sensor::lidar, Sensor::imu, Sensor::encoder}) {
     waiting_[index_of(sensor)] = read(sensor);
   }

@@ -28,9 +28,9 @@ struct CaptureEvent {
   CanFrame frame;
 };
 
-/// What a capture holds of all its sensors, in the order of arrival, with the times as they would be
-/// had nobody set the host's clock meanwhile. It may lack sensors; of a CAN log it has the frames
-/// of the encoder's interface.
+/// What a capture holds of all its sensors, in the order of arrival, with the times as they would
+/// be had nobody set the host's clock meanwhile. It may lack sensors; of a CAN log it has the
+/// frames of the encoder's interface.
 class CaptureEvents {
 public:
   /// Throws Failure, also where there is nothing at all.

@@ -42,8 +42,7 @@ Slice find_slice(const SliceOptions& options, const Settings& settings) {
   CaptureEvents events(options.capture, settings);
   CaptureEvent event;
   std::optional<Slice> slice;
-  HostSteps steps;
-  if (lidar_file(options.capture)) steps = find_host_steps(options.capture, settings.lidar);
+  const HostSteps steps = find_host_steps(options.capture, settings.lidar);
   while (events.next(event)) {
     if (!slice) slice = Slice{event.arrival_ns, options.range, steps};
     if (slice->holds(event.arrival_ns)) return *slice;
@@ -114,6 +113,7 @@ void cut(const SliceOptions& options) {
   options.range.check();
   const Settings settings = capture_settings(options.capture, options.config);
   const Slice slice = find_slice(options, settings);
+  say(slice.steps);
   make_capture_folder(options.folder, options.outputs);
   if (fs::equivalent(options.capture, options.folder)) {
     throw Failure("a part cannot take the place of the capture that it is cut from");
