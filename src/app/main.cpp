@@ -109,7 +109,7 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (app.exit(error) != 0) return kUsage;
-    if (std::fflush(stdout) == 0) return kStopped;
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return kStopped;
     std::fputs("screed: cannot write to standard output\n", stderr);
     return kFailed;
   }

@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import re
 import shutil
 import socket
 import struct
@@ -90,6 +91,19 @@ class FieldTest(ProgramTest):
             counts[name] = self.decoded(SCREE, log, "encoder", "--config", config)
         self.assertGreater(len(counts["ta.log"]), 10)
         self.assertEqual(counts["ta.log"], counts["bom.log"])
+
+    def test_times_that_are_differences_are_said(self):
+        with open(self.field("candump_kinds/ta.log")) as file:
+            frames = [re.match(r" \((.*?)\)(.*)", line).groups() for line in file]
+        lines, before = [], float(frames[0][0])
+        for stamp, frame in frames:
+            lines.append(f" ({float(stamp) - before:010.6f}){frame}\n")
+            before = float(stamp)
+        log = self.write("td.log", "".join(lines))
+        config = self.field("candump_kinds/enc.toml")
+        arguments = ["--sensor", "encoder", "--config", config, "--out", self.path("td.csv")]
+        said = self.done(SCREE, "decode", log, *arguments).stderr
+        self.assertIn("candump -td", said)
 
     def test_a_log_by_another_clock_is_said_with_both_times(self):
         log = self.field("can_log_other_clock/tz.can.log")
