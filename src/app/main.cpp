@@ -10,11 +10,11 @@
 #include <string>
 
 #include "log_format.hpp"
-#include "memory_cap.hpp"
 #include "pipeline_processor.hpp"
 #include "real_time.hpp"
 #include "running_config.hpp"
 #include "scree/app/daemon.hpp"
+#include "scree/app/memory_cap.hpp"
 #include "scree/app/pipeline.hpp"
 #include "scree/clock/clocks.hpp"
 #include "scree/drivers/gpio/lines.hpp"
@@ -55,7 +55,7 @@ scree::Result<void> run(const std::filesystem::path& file, const scree::Signals&
   auto lines = scree::gpio::Lines::open(settings.gpio);  // stop is on from here
   if (!lines) return tl::make_unexpected(lines.error());
   const std::uint64_t taken_before = scree::memory_taken();
-  auto pipeline = scree::Pipeline::make(settings, file);
+  auto pipeline = scree::within_memory([&] { return scree::Pipeline::make(settings, file); });
   if (!pipeline) return tl::make_unexpected(pipeline.error());
   spdlog::info("map and detector take {:.2f} GB of memory",
                static_cast<double>(scree::memory_taken() - taken_before) * 1e-9);

@@ -1,4 +1,4 @@
-#include "memory_cap.hpp"
+#include "scree/app/memory_cap.hpp"
 
 #include <spdlog/fmt/fmt.h>
 #include <sys/sysinfo.h>

@@ -3,11 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <limits>
-#include <new>
-#include <stdexcept>
 #include <utility>
-
-#include "memory_cap.hpp"
 
 namespace scree {
 
@@ -32,14 +28,7 @@ Result<Detector> make_detector(const DetectSettings& settings, const DetectorLim
                                const std::filesystem::path& config_file) {
   auto network = load_network(settings, config_file);
   if (!network) return tl::make_unexpected(network.error());
-  const MemoryCap cap;
-  try {
-    return Detector(settings, limits, *std::move(network));
-  } catch (const std::bad_alloc&) {
-    return fail(cap.sentence());
-  } catch (const std::length_error&) {  // more than can be addressed
-    return fail(cap.sentence());
-  }
+  return Detector(settings, limits, *std::move(network));
 }
 
 Result<Networks> load_networks(const Settings& settings, const std::filesystem::path& config_file) {
@@ -57,14 +46,7 @@ Result<Pipeline> Pipeline::make(const Settings& settings,
                                 const std::filesystem::path& config_file) {
   auto networks = load_networks(settings, config_file);
   if (!networks) return tl::make_unexpected(networks.error());
-  const MemoryCap cap;
-  try {
-    return Pipeline(settings, *networks);
-  } catch (const std::bad_alloc&) {
-    return fail(cap.sentence());
-  } catch (const std::length_error&) {  // more than can be addressed
-    return fail(cap.sentence());
-  }
+  return Pipeline(settings, *networks);
 }
 
 Pipeline::Pipeline(const Settings& settings, const Networks& networks)

@@ -196,23 +196,6 @@ TEST_F(HealthWatchTest, SweepsThatWaitedInVainAreSaid) {
   EXPECT_THAT(pass(20), HasSubstr("W sweeps went on without the samples of IMU or encoder"));
 }
 
-TEST_F(HealthWatchTest, ListsOfOldDataAreNoSight) {
-  drive(50);
-  EXPECT_EQ(health_.state, health_t::OK);
-  const auto with_list_of = [&](std::int64_t age_ns) {
-    now_ += 20 * kMillisecond;
-    datagram();
-    packet();
-    detector_ = {now_, now_ - age_ns};
-    update();
-    return health_.state;
-  };
-  EXPECT_EQ(with_list_of(HealthWatch::kOldData), health_t::OK);
-  EXPECT_EQ(with_list_of(HealthWatch::kOldData + kMillisecond), health_t::BLIND);
-  EXPECT_THAT(health_.reason, HasSubstr("no list of the last half second"));
-  EXPECT_EQ(with_list_of(50 * kMillisecond), health_t::OK);
-}
-
 TEST_F(HealthWatchTest, MessagesThatLcmDoesNotTakeAreSaid) {
   drive(50);
   detector_.not_sent = 3;

@@ -1,4 +1,4 @@
-#include "app/memory_cap.hpp"
+#include "scree/app/memory_cap.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

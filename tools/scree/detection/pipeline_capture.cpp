@@ -8,6 +8,7 @@
 #include "commands.hpp"
 #include "detection/setup_log.hpp"
 #include "detection/waiting_sweeps.hpp"
+#include "scree/app/memory_cap.hpp"
 #include "scree/capture/capture.hpp"
 
 namespace scree::cli {
@@ -15,8 +16,8 @@ namespace {
 
 Pipeline make_pipeline(const Settings& settings, const std::filesystem::path& capture,
                        const std::filesystem::path& config) {
-  auto pipeline =
-      Pipeline::make(settings, settings_file(capture, config).value_or(std::filesystem::path()));
+  const auto file = settings_file(capture, config).value_or(std::filesystem::path());
+  auto pipeline = within_memory([&] { return Pipeline::make(settings, file); });
   if (!pipeline) throw Failure(pipeline.error().message);
   return *std::move(pipeline);
 }

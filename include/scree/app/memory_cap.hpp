@@ -3,7 +3,11 @@
 #include <sys/resource.h>
 
 #include <cstdint>
+#include <new>
+#include <stdexcept>
 #include <string>
+
+#include "scree/core/result.hpp"
 
 namespace scree {
 
@@ -28,5 +32,19 @@ private:
   rlimit before_{};
   std::uint64_t left_;
 };
+
+/// What `make` returns, a Result, or one sentence where there is not enough memory for it. The
+/// limit is the whole process's: no other thread may do the same.
+template <class Make>
+auto within_memory(const Make& make) -> decltype(make()) {
+  const MemoryCap cap;
+  try {
+    return make();
+  } catch (const std::bad_alloc&) {
+    return fail(cap.sentence());
+  } catch (const std::length_error&) {  // more than can be addressed
+    return fail(cap.sentence());
+  }
+}
 
 }  // namespace scree
