@@ -114,14 +114,21 @@ class SafetyTest(LiveDaemonTest):
         """One sentence and 1, or it runs and ends when asked to."""
         options = {"env": {**os.environ, "ASAN_OPTIONS": "detect_leaks=0"}}
         daemon = self.start(self.screed, "--config", self.config, preexec_fn=limits, **options)
-        try:
-            _, said = daemon.communicate(timeout=2)
-        except subprocess.TimeoutExpired:
-            daemon.terminate()
-            _, said = daemon.communicate(timeout=10)
-            self.assertEqual(daemon.returncode, 0, said)
+        log = Lines(daemon.stderr)
+        end = time.monotonic() + PATIENCE
+        while daemon.poll() is None and time.monotonic() < end:
+            if any("publishing on" in line for line in log.lines):
+                time.sleep(0.3)  # until its threads run, or do not
+                daemon.terminate()
+                break
+            time.sleep(0.02)
+        code = daemon.wait(timeout=PATIENCE)
+        log.thread.join()
+        said = "".join(log.lines)
+        if code == 0:
+            self.assertIn("stopping", said)
             return None
-        self.assertIn(daemon.returncode, (1, 127), said)  # 127: the loader has not got so far
+        self.assertIn(code, (1, 127), said)  # 127: the loader has not got so far
         self.assertTrue(said.strip())
         return said.strip().splitlines()[-1]
 
