@@ -91,6 +91,9 @@ std::int64_t LidarStream::gap_ns(Bytes packet) const {
 /// Datagrams overtake each other on their way. One that leaves a gap of a few packets waits until
 /// the gap is filled or as many others wait; without disorder and loss nothing waits.
 void LidarStream::put_in_order(Bytes packet, std::int64_t arrival_ns) {
+  if (!one_clock_.takes(std::int64_t{timestamp_us(packet)} * 1000, arrival_ns)) {
+    return refuse(Refusal::second_sensor);
+  }
   const std::int64_t packet_ns = packet_duration_ns(return_mode(packet)), half = packet_ns / 2;
   const std::int64_t most = static_cast<std::int64_t>(early_.size()) * packet_ns + half;
   const auto is_early = [&] { return gap_ns(packet) > half && gap_ns(packet) <= most; };
@@ -138,6 +141,10 @@ void LidarStream::accept(Bytes packet, std::int64_t arrival_ns) {
   const std::int64_t since_ns = previous_ ? elapsed_ns(packet) : 0;
   if (previous_ && since_ns == 0) return refuse(Refusal::duplicate);
   if (since_ns < 0 && since_ns > -kMostLateNs) return refuse(Refusal::late);
+  // Two sensors whose clocks are set by the same GPS send between each other's packets.
+  const std::int64_t packet_ns = packet_duration_ns(return_mode(packet));
+  const std::int64_t soonest = previous_ ? std::min(packet_ns, previous_->duration_ns) * 4 / 5 : 0;
+  if (since_ns > 0 && since_ns < soonest) return refuse(Refusal::second_sensor);
 
   const bool started_over = clock_.update(sent_ns % kHourNs, arrival_ns);
   counters_.device_restarts = clock_.device_restarts();

@@ -3,6 +3,7 @@
 #include <pthread.h>
 #include <spdlog/spdlog.h>
 
+#include <initializer_list>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -42,16 +43,16 @@ public:
         publisher_(
             settings, lines, std::move(publisher), lists_, [this] { return collect_status(); },
             watchdog_, keeper_.get()) {
-    if (sensors_ != nullptr) {
-      if (!settings.imu.device.empty()) {
-        imu_.emplace(settings.imu, *sensors_);
-        imu_thread_ = start_thread("imu", *imu_);
-      }
-      if (!settings.encoder.interface.empty()) {
-        encoder_.emplace(settings.encoder, *sensors_);
-        encoder_thread_ = start_thread("encoder", *encoder_);
-      }
-    }
+    if (sensors_ == nullptr) return;
+    if (!settings.imu.device.empty()) imu_.emplace(settings.imu, *sensors_);
+    if (!settings.encoder.interface.empty()) encoder_.emplace(settings.encoder, *sensors_);
+  }
+
+  /// Where a thread cannot be started, those before are stopped by the destructor.
+  /// @throw std::system_error
+  void start_threads() {
+    if (imu_) imu_thread_ = start_thread("imu", *imu_);
+    if (encoder_) encoder_thread_ = start_thread("encoder", *encoder_);
     lidar_thread_ = start_thread("lidar", lidar_);
     detector_thread_ = start_thread("detector", detector_);
     publisher_thread_ = start_thread("publisher", publisher_);
@@ -62,18 +63,11 @@ public:
     lidar_.stop();
     detector_.stop();
     publisher_.stop();
-    for (std::thread* thread : {&lidar_thread_, &detector_thread_, &publisher_thread_}) {
-      thread->join();
-    }
+    join({&lidar_thread_, &detector_thread_, &publisher_thread_});
     // After the publisher, which asks both for their status.
-    if (imu_) {
-      imu_->stop();
-      imu_thread_.join();
-    }
-    if (encoder_) {
-      encoder_->stop();
-      encoder_thread_.join();
-    }
+    if (imu_) imu_->stop();
+    if (encoder_) encoder_->stop();
+    join({&imu_thread_, &encoder_thread_});
   }
 
   std::string_view stalled_thread() override { return watchdog_.stalled(); }
@@ -92,6 +86,12 @@ private:
     std::thread thread([&worker] { worker.run(); });
     pthread_setname_np(thread.native_handle(), name);  // as `top -H` shows it
     return thread;
+  }
+
+  static void join(std::initializer_list<std::thread*> threads) {
+    for (std::thread* thread : threads) {
+      if (thread->joinable()) thread->join();
+    }
   }
 
   DaemonStatus collect_status() {
@@ -131,7 +131,7 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings, SweepPro
                                               SyncBuffer* sensors, const RobotLines& lines) {
   auto ports = LidarPorts::open(settings.lidar);
   if (!ports) return tl::make_unexpected(ports.error());
-  auto publisher = Publisher::open(settings.lcm.url, max_obstacles(settings));
+  auto publisher = Publisher::open(settings.lcm.url);
   if (!publisher) return tl::make_unexpected(publisher.error());
   auto keeper = Keeper::start(settings);
   if (!keeper) return tl::make_unexpected(keeper.error());
@@ -139,9 +139,11 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings, SweepPro
                settings.lidar.address, ports->data.port(), ports->position.port(),
                settings.lidar.sender.empty() ? "any sender" : settings.lidar.sender);
   spdlog::info("publishing on {}", settings.lcm.url);
-  return std::make_unique<ThreadedDaemon>(settings, std::move(process), sensors, lines,
-                                          std::move(*ports), std::move(*publisher),
-                                          std::move(*keeper));
+  auto daemon = std::make_unique<ThreadedDaemon>(settings, std::move(process), sensors, lines,
+                                                 std::move(*ports), std::move(*publisher),
+                                                 std::move(*keeper));
+  daemon->start_threads();
+  return daemon;
 }
 
 }  // namespace scree

@@ -181,7 +181,8 @@ std::string HealthWatch::blind_reason(std::int64_t now_ns, const LidarStatus& li
     return "the lidar makes no whole turns: does it turn?";
   if (now_ns - detector.last_loop_ns > kDetectorStops) return "the detector is late";
   if (detector.last_list_ns == 0) return "no sweep has got through the detector yet";
-  if (now_ns - detector.last_list_ns > kListsStop) return "sweeps come, but no lists go out";
+  if (now_ns - detector.last_list_ns > kOldData)
+    return "sweeps come, but no list of the last half second has gone out";
   return detector.setup.is_grave() ? sentence(detector.setup.findings[0]) : "";
 }
 
@@ -212,6 +213,8 @@ void HealthWatch::log_losses(std::int64_t now_ns, const LidarStatus& lidar,
        "encoder.scale is wrong, or its sign"},
       {detector.heading_resets,
        "turns of the IMU's yaw that its angular rate did not know of: they were not believed"},
+      {detector.not_sent,
+       "messages that LCM did not take: is the network up, and does the server of lcm.url read?"},
   }};
   for (std::size_t i = 0; i < kLosses; ++i) {
     losses_[i].update(now_ns, losses[i].count, losses[i].what, log_);

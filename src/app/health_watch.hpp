@@ -20,9 +20,10 @@ namespace scree {
 /// before the first.
 struct DetectorStatus {
   std::int64_t last_loop_ns = 0;  ///< its thread waited, or began or ended with a sweep
-  std::int64_t last_list_ns = 0;  ///< LCM took a list, of a sweep not older than kOldSweep
+  std::int64_t last_list_ns = 0;  ///< the data of the newest list that LCM took
   std::uint64_t not_covered = 0;  ///< sweeps that waited in vain for samples of IMU or encoder
   std::uint64_t slips = 0, heading_resets = 0;  ///< see MotionReport
+  std::uint64_t not_sent = 0;                   ///< messages that LCM did not take in time
   SetupReport setup{};                          ///< see DetectionReport
 };
 
@@ -31,10 +32,10 @@ struct DetectorStatus {
 ///
 /// The robot is blind unless packets of the lidar come and are understood (SensorWatch::kSilence)
 /// and have returns (kReturnsStop), they make whole turns (kTurnStops), the detector is not late
-/// (kDetectorStops) and lists go out (kListsStop). It is blind too where a setting is so wrong that
-/// the lists cannot be right; they go out all the same, for whoever looks for the mistake. Whatever
-/// stops is said within 300 ms when this is asked every 20 ms. Without IMU and encoder the robot
-/// sees less well, and is not blind.
+/// (kDetectorStops) and lists of fresh data go out (kOldData). It is blind too where a setting is
+/// so wrong that the lists cannot be right; they go out all the same, for whoever looks for the
+/// mistake. Whatever stops is said within 300 ms when this is asked every 20 ms. Without IMU and
+/// encoder the robot sees less well, and is not blind.
 class HealthWatch {
 public:
   // A VLP-16 turns at least 5 times a second (its manual, rotation speed: 300 to 1200 rpm), so that
@@ -43,10 +44,9 @@ public:
   static constexpr std::int64_t kReturnsStop = 200 * kMillisecond;
   static constexpr std::int64_t kTurnStops = 250 * kMillisecond;
   static constexpr std::int64_t kDetectorStops = 250 * kMillisecond;
-  // Two turns: lists of which one was quick and the next one late are so far apart.
-  static constexpr std::int64_t kListsStop = 400 * kMillisecond;
-  // A list of a sweep that old says nothing of now. One comes after a pause of the whole computer.
-  static constexpr std::int64_t kOldSweep = 5 * kSecond;
+  // Two turns, and what it takes to make a list of one. Older data says nothing of now: it comes
+  // after a pause of the process or of the whole computer, or LCM does not take lists.
+  static constexpr std::int64_t kOldData = 500 * kMillisecond;
 
   HealthWatch(const Settings& settings, std::int64_t now_ns);
 
@@ -87,7 +87,7 @@ private:
   std::int64_t logged_at_ns_ = 0;
   bool logged_datagram_ = false, logged_packet_ = false;
   bool logged_pulse_ = false, logged_pps_lost_ = false, logged_no_pulse_ = false;
-  static constexpr std::size_t kLosses = 4;
+  static constexpr std::size_t kLosses = 5;
   std::array<GrowthLog, kLosses> losses_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <poll.h>
 
+#include <algorithm>
 #include <iterator>
 #include <utility>
 
@@ -61,23 +62,24 @@ void LidarReader::run() {
 }
 
 void LidarReader::read_data() {
-  const std::uint64_t accepted = stream_.counters().accepted;
   for (int i = 0; i < kBatch; ++i) {
     const auto datagram = ports_.data.receive(buffer_);
     if (!datagram) break;
-    arrival_ns_ = clock_.to_monotonic(datagram->arrival_ns, read_clocks());
+    // What waited while this process was paused is as old as the kernel says.
+    arrival_ns_ = std::min(clock_.to_monotonic(datagram->arrival_ns, read_clocks()), steady_ns());
     const bool is_data = datagram->bytes.size() == velodyne::kDataPacketSize;
     if (is_data && !status_.senders.takes(datagram->sender, arrival_ns_)) continue;
     status_.sender = datagram->sender;
     status_.datagram_size = static_cast<std::uint32_t>(datagram->bytes.size());
-    status_.last_datagram_ns = steady_ns();
+    status_.last_datagram_ns = arrival_ns_;
     if (keeper_ != nullptr && is_data) keeper_->put_packet(datagram->bytes);
+    const std::uint64_t accepted = stream_.counters().accepted;
     stream_.take(datagram->bytes, arrival_ns_);
+    if (stream_.counters().accepted != accepted) status_.last_packet_ns = arrival_ns_;
   }
   status_.lidar = stream_.counters();
   status_.firmware = stream_.firmware();
   status_.without_return_ns = stream_.without_return_ns();
-  if (status_.lidar.accepted != accepted) status_.last_packet_ns = steady_ns();
 }
 
 void LidarReader::read_position() {
@@ -109,7 +111,7 @@ void LidarReader::read_pulses() {
 }
 
 void LidarReader::push(Sweep& sweep) {
-  if (sweep.is_whole) status_.last_sweep_ns = steady_ns();
+  if (sweep.is_whole) status_.last_sweep_ns = arrival_ns_;
   // Nothing seen is not the same as nothing there: a covered sensor must not give empty lists.
   if (sweep.points.empty()) {
     ++status_.sweeps_empty;

@@ -1,10 +1,12 @@
 #include "log_format.hpp"
 
 #include <spdlog/pattern_formatter.h>
-#include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
+#include <chrono>
 #include <memory>
+#include <sstream>
 #include <utility>
 
 #include "service_manager.hpp"
@@ -33,8 +35,8 @@ public:
 
 }  // namespace
 
-void set_up_log() {
-  spdlog::set_default_logger(spdlog::stderr_logger_mt("screed"));
+Log::Log() : writer_(LogWriter::start(STDERR_FILENO)) {
+  spdlog::set_default_logger(std::make_shared<spdlog::logger>("screed", writer_));
   auto formatter = std::make_unique<spdlog::pattern_formatter>();
   if (service_manager::logs_to_journal()) {
     formatter->add_flag<JournalLevel>('*').set_pattern("%*%v");
@@ -42,7 +44,16 @@ void set_up_log() {
     formatter->set_pattern("%H:%M:%S.%e %l: %v");
   }
   spdlog::set_formatter(std::move(formatter));
-  spdlog::flush_on(spdlog::level::info);
+}
+
+Log::~Log() {
+  writer_->finish(std::chrono::milliseconds(500));
+}
+
+void Log::failed(const std::string& reason) {
+  const char* prefix = service_manager::logs_to_journal() ? "<3>" : "screed: ";
+  std::istringstream lines(reason);
+  for (std::string line; std::getline(lines, line);) writer_->write(prefix + line + '\n');
 }
 
 }  // namespace scree

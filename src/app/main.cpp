@@ -2,10 +2,11 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <functional>
-#include <sstream>
+#include <new>
 #include <string>
 
 #include "log_format.hpp"
@@ -13,6 +14,7 @@
 #include "real_time.hpp"
 #include "running_config.hpp"
 #include "scree/app/daemon.hpp"
+#include "scree/app/memory_cap.hpp"
 #include "scree/app/pipeline.hpp"
 #include "scree/clock/clocks.hpp"
 #include "scree/drivers/gpio/lines.hpp"
@@ -22,15 +24,6 @@
 namespace {
 
 enum ExitCode : int { kStopped = 0, kFailed = 1, kUsage = 2 };
-
-int failed(const std::string& reason) {
-  const char* prefix = scree::service_manager::logs_to_journal() ? "<3>" : "screed: ";
-  std::istringstream lines(reason);
-  for (std::string line; std::getline(lines, line);) {
-    std::fprintf(stderr, "%s%s\n", prefix, line.c_str());
-  }
-  return kFailed;
-}
 
 /// The result is valid as long as the lines are held.
 scree::RobotLines robot_lines(scree::gpio::Lines& held) {
@@ -48,28 +41,30 @@ scree::RobotLines robot_lines(scree::gpio::Lines& held) {
 }
 
 /// Checks the configuration and all that it names; nothing is opened or started.
-int check(const std::filesystem::path& file) {
+scree::Result<void> check(const std::filesystem::path& file) {
   const auto config = scree::RunningConfig::read(file);
-  if (!config) return failed(config.error().message);
+  if (!config) return tl::make_unexpected(config.error());
   const auto networks = scree::load_networks(config->settings(), file);
-  return networks ? kStopped : failed(networks.error().message);
+  return networks ? scree::Result<void>() : tl::make_unexpected(networks.error());
 }
 
-int run(const std::filesystem::path& file) {
+scree::Result<void> run(const std::filesystem::path& file, const scree::Signals& signals) {
   auto config = scree::RunningConfig::read(file);
-  if (!config) return failed(config.error().message);
+  if (!config) return tl::make_unexpected(config.error());
   const scree::Settings& settings = config->settings();
   auto lines = scree::gpio::Lines::open(settings.gpio);  // stop is on from here
-  if (!lines) return failed(lines.error().message);
-  auto pipeline = scree::Pipeline::make(settings, file);
-  if (!pipeline) return failed(pipeline.error().message);
+  if (!lines) return tl::make_unexpected(lines.error());
+  const std::uint64_t taken_before = scree::memory_taken();
+  auto pipeline = scree::within_memory([&] { return scree::Pipeline::make(settings, file); });
+  if (!pipeline) return tl::make_unexpected(pipeline.error());
+  spdlog::info("map and detector take {:.2f} GB of memory",
+               static_cast<double>(scree::memory_taken() - taken_before) * 1e-9);
   pipeline->time_stages(scree::steady_ns);
 
   scree::PipelineProcessor processor(*pipeline, settings.track);
-  const scree::Signals signals;
   auto daemon = scree::Daemon::start(settings, std::ref(processor), &pipeline->sensors(),
                                      robot_lines(*lines));
-  if (!daemon) return failed(daemon.error().message);
+  if (!daemon) return tl::make_unexpected(daemon.error());
   scree::lock_memory();
 
   const int signal = scree::supervise(**daemon, signals, [&] {
@@ -78,12 +73,28 @@ int run(const std::filesystem::path& file) {
     (*daemon)->apply(settings);
   });
   spdlog::info("stopping: {}", signal == SIGINT ? "interrupted" : "asked to terminate");
-  return kStopped;
+  return {};
+}
+
+/// @param work what the options ask for
+int ended(const std::function<scree::Result<void>()>& work) {
+  scree::Log log;
+  try {
+    const auto done = work();
+    if (!done) log.failed(done.error().message);
+    return done ? kStopped : kFailed;
+  } catch (const std::bad_alloc&) {
+    log.failed("there is not enough memory (`ulimit -v`, `free -m`)");
+  } catch (const std::exception& error) {
+    log.failed(error.what());
+  }
+  return kFailed;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  const scree::Signals signals;  // asked to end while it starts, it ends as soon as it has
   CLI::App app("Finds obstacles in a lidar's data and publishes them on LCM");
   app.name("screed");
   app.set_version_flag("--version", SCREE_VERSION);
@@ -98,12 +109,9 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (app.exit(error) != 0) return kUsage;
-    return std::fflush(stdout) == 0 ? kStopped : failed("cannot write to standard output");
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return kStopped;
+    std::fputs("screed: cannot write to standard output\n", stderr);
+    return kFailed;
   }
-  scree::set_up_log();
-  try {
-    return only_checks ? check(config) : run(config);
-  } catch (const std::exception& error) {
-    return failed(error.what());
-  }
+  return ended([&] { return only_checks ? check(config) : run(config, signals); });
 }

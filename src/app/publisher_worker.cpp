@@ -5,7 +5,6 @@
 #include <chrono>
 #include <utility>
 
-#include "keeper.hpp"
 #include "page_faults.hpp"
 #include "scree/clock/clocks.hpp"
 #include "scree/core/nanoseconds.hpp"
@@ -16,6 +15,8 @@ namespace {
 // Health is checked often enough that what stops is published within 300 ms (see HealthWatch).
 constexpr std::chrono::milliseconds kCheckInterval{20};
 constexpr std::int64_t kHealthIntervalNs = kSecond;
+// For the last message, that the robot is blind from now on.
+constexpr std::chrono::seconds kEndOfLcm{1};
 
 std::int64_t count(std::uint64_t value) {
   return static_cast<std::int64_t>(value);
@@ -26,11 +27,11 @@ std::int64_t count(std::uint64_t value) {
 PublisherWorker::PublisherWorker(const Settings& settings, const RobotLines& lines,
                                  Publisher publisher, ObstacleListPool& lists, GetStatus get_status,
                                  const ThreadWatchdog& threads, Keeper* keeper)
-    : publisher_(std::move(publisher)),
+    : lcm_(LcmSender::start(std::move(publisher),
+                            static_cast<std::size_t>(settings.memory.obstacles), keeper)),
       lists_(lists),
       get_status_(std::move(get_status)),
       threads_(threads),
-      keeper_(keeper),
       outputs_(settings.stop, lines),
       watch_(settings, steady_ns()),
       last_health_ns_(steady_ns()) {
@@ -59,6 +60,7 @@ void PublisherWorker::run() {
   drive_outputs(now_ns);
   status_ = get_status_();
   publish_health(now_ns);
+  if (!lcm_->finish(kEndOfLcm)) spdlog::warn("LCM hangs, the last messages are lost");
 }
 
 void PublisherWorker::stop() {
@@ -74,33 +76,30 @@ std::string PublisherWorker::sentence() {
 void PublisherWorker::publish(TimedObstacleList& timed) {
   outputs_.update(timed.list, steady_ns());
   timed.list.stamp_ns = clock_.to_real(timed.list.stamp_ns, read_clocks());
-  const bool is_taken = publisher_.publish(timed.list);
-  const std::int64_t now_ns = steady_ns(), latency_ns = now_ns - timed.arrival_ns;
-  statistics_.record(latency_ns, timed.detector_ns, timed.report);
-  ++(is_taken ? health_.lists_published : health_.lists_failed);
-  keep(kObstaclesChannel);
-  if (!is_taken) return;
-  outputs_.toggle_heartbeat();
-  if (latency_ns <= HealthWatch::kOldSweep) last_list_ns_ = now_ns;
+  lcm_->put(timed.list, timed.arrival_ns);
+  statistics_.record(steady_ns() - timed.arrival_ns, timed.detector_ns, timed.report);
   if (timed.grid.empty()) return;
   timed.grid.stamp_ns = timed.list.stamp_ns;
-  if (!publisher_.publish(timed.grid)) ++health_.lists_failed;
-  keep(kGridChannel);
+  lcm_->put(timed.grid);
 }
 
-/// What was published last, also where LCM did not take it.
-void PublisherWorker::keep(const char* channel) {
-  if (keeper_ != nullptr) keeper_->put(channel, publisher_.last());
+void PublisherWorker::take_sent(const LcmSender::Counts& sent) {
+  if (count(sent.lists) != health_.lists_published) outputs_.toggle_heartbeat();
+  health_.lists_published = count(sent.lists);
+  health_.lists_failed = count(sent.failed);
 }
 
 void PublisherWorker::update_health(std::int64_t now_ns) {
   outputs_.set_zone(zone_.get());
   status_ = get_status_();
+  const LcmSender::Counts sent = lcm_->counts();
+  take_sent(sent);
   const DetectorStatus detector{status_.detector_loop_ns,
-                                last_list_ns_,
+                                sent.last_list_ns,
                                 status_.sweeps_not_covered,
                                 statistics_.motion().slips,
                                 statistics_.motion().heading_resets,
+                                sent.failed + sent.health_failed,
                                 statistics_.setup()};
   bool has_changed =
       watch_.update(now_ns, status_.lidar, status_.imu, status_.encoder, detector, health_);
@@ -127,9 +126,8 @@ void PublisherWorker::publish_health(std::int64_t now_ns) {
   health_.stamp_ns = wall_ns();
   fill_counts();
   fill_computer();
-  if (!publisher_.publish(health_)) spdlog::warn("LCM does not take the health message");
-  keep(kHealthChannel);
-  last_health_ns_ = now_ns;
+  // What found no room is put again with the next check.
+  if (lcm_->put(health_)) last_health_ns_ = now_ns;
 }
 
 void PublisherWorker::fill_counts() {

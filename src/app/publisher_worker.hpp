@@ -3,12 +3,14 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <string>
 
 #include "daemon_status.hpp"
 #include "detection_statistics.hpp"
 #include "health_watch.hpp"
+#include "lcm_sender.hpp"
 #include "loop_counter.hpp"
 #include "output_lines.hpp"
 #include "scree/clock/host_clock.hpp"
@@ -22,8 +24,9 @@ namespace scree {
 
 class Keeper;
 
-/// Publishes obstacle lists and health, drives the output lines and writes the log. run() is the
-/// work of a thread. Health goes out once a second, and at once when something in it changes.
+/// Publishes obstacle lists and health and drives the output lines. run() is the work of a thread,
+/// and nothing in it blocks but the lines themselves: LCM and the log have threads of their own.
+/// Health goes out once a second, and at once when something in it changes.
 class PublisherWorker {
 public:
   /// The thread of run() calls it.
@@ -49,19 +52,18 @@ public:
 
 private:
   void publish(TimedObstacleList& timed);
-  void keep(const char* channel);
   void update_health(std::int64_t now_ns);
   bool drive_outputs(std::int64_t now_ns);
+  void take_sent(const LcmSender::Counts& sent);
   void publish_health(std::int64_t now_ns);
   void fill_counts();
   void fill_computer();
   void update_sentence();
 
-  Publisher publisher_;
+  std::shared_ptr<LcmSender> lcm_;
   ObstacleListPool& lists_;
   GetStatus get_status_;
   const ThreadWatchdog& threads_;
-  Keeper* keeper_;
   TripleBuffer<StopSettings> zone_;
   HostClock clock_;
   OutputLines outputs_;
@@ -70,7 +72,7 @@ private:
   Thermometer thermometer_;
   DaemonStatus status_;
   health_t health_{};
-  std::int64_t last_list_ns_ = 0, last_health_ns_;
+  std::int64_t last_health_ns_;
 
   std::atomic<bool> is_stopped_{false};
   LoopCounter loops_;

@@ -9,8 +9,8 @@
 
 namespace scree {
 
-/// The signals that the daemon obeys. This is made before the daemon starts its threads, because
-/// threads inherit which signals are blocked.
+/// The signals that the daemon obeys, held back from now on until wait() is called, and SIGPIPE,
+/// which is left alone: who reads the log may go. Threads inherit this, so it is made before them.
 class Signals {
 public:
   Signals();

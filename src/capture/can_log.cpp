@@ -161,13 +161,17 @@ std::uint64_t CanLogCounters::all_refused() const {
   return std::accumulate(refused.begin(), refused.end(), std::uint64_t{0});
 }
 
+bool CanLogCounters::has_differences() const {
+  constexpr std::int64_t kNoEpoch = 365 * 86'400 * kSecond;
+  constexpr std::uint64_t kTells = 8;
+  return frames > kTells && not_later > frames / 4 && latest_ns < kNoEpoch;
+}
+
 Result<CanLogReader> CanLogReader::open(const std::filesystem::path& file) {
   CanLogReader reader;
-  reader.stream_.open(file, std::ios::binary);
   std::error_code ignored;
-  if (!reader.stream_ || std::filesystem::is_directory(file, ignored)) {
-    return fail(fmt::format("cannot read {}", file.string()));
-  }
+  if (std::filesystem::is_regular_file(file, ignored)) reader.stream_.open(file, std::ios::binary);
+  if (!reader.stream_.is_open()) return fail(fmt::format("cannot read {}", file.string()));
   if (const std::string_view packer = packed_with(file); !packer.empty()) {
     return fail(fmt::format("{}: is packed with {}: unpack it first", file.string(), packer));
   }
@@ -196,7 +200,9 @@ bool CanLogReader::next(CanFrame& frame, std::string* interface) {
     std::string_view name;
     const CanLineRefusal refusal = parse_can_line(line, frame, name);
     if (refusal == CanLineRefusal::none) {
-      ++counters_.frames;
+      if (counters_.frames++ > 0 && frame.t_ns <= last_ns_) ++counters_.not_later;
+      last_ns_ = frame.t_ns;
+      counters_.latest_ns = std::max(counters_.latest_ns, frame.t_ns);
       if (interface != nullptr) *interface = name;
       return true;
     }
@@ -246,6 +252,7 @@ Result<void> CanLogWriter::close() {
 
 Result<void> CanLogWriter::result() const {
   if (!stream_) return fail(fmt::format("cannot write {}: the disk may be full", name_));
+  if (!std::filesystem::exists(name_)) return fail(name_ + " is gone: was its folder removed?");
   return {};
 }
 

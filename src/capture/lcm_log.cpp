@@ -29,6 +29,8 @@ std::uint64_t big_endian(const Header& bytes, std::size_t offset, std::size_t si
 }  // namespace
 
 bool is_lcm_log(const std::filesystem::path& file) {
+  std::error_code none;
+  if (!std::filesystem::is_regular_file(file, none)) return false;
   std::ifstream stream(file, std::ios::binary);
   Header header{};
   return stream.read(header.data(), kMagicSize) && big_endian(header, 0, kMagicSize) == kMagic;

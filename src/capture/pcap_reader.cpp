@@ -36,7 +36,7 @@ Result<PcapReader> PcapReader::open(const std::filesystem::path& file) {
   const auto status = std::filesystem::status(file, error);
   if (!std::filesystem::exists(status)) return fail(fmt::format("{}: no such file", file.string()));
   if (!std::filesystem::is_regular_file(status)) {
-    return fail(fmt::format("{}: not a file", file.string()));
+    return fail(fmt::format("{}: is no regular file: copy it into one", file.string()));
   }
   if (std::filesystem::file_size(file, error) == 0) {
     return fail(fmt::format("{}: the file is empty", file.string()));

@@ -91,6 +91,8 @@ Result<PcapWriter> PcapWriter::create(const std::filesystem::path& file, int lin
     return fail(
         fmt::format("cannot write {}: {}", file.string(), pcap_geterr(writer.handle_.get())));
   }
+  // A file without the format's head would be none.
+  if (const auto flushed = writer.flush(); !flushed) return tl::make_unexpected(flushed.error());
   return writer;
 }
 
@@ -127,6 +129,7 @@ Result<void> PcapWriter::flush() {
   if (pcap_dump_flush(dumper_.get()) != 0 || std::ferror(stream) != 0) {
     return fail(fmt::format("cannot write {}: the disk may be full", name_));
   }
+  if (!std::filesystem::exists(name_)) return fail(name_ + " is gone: was its folder removed?");
   return {};
 }
 

@@ -116,6 +116,8 @@ Result<PcdCloud> read_points(const std::string& bytes) {
 }  // namespace
 
 bool is_pcd(const std::filesystem::path& file) {
+  std::error_code none;
+  if (!std::filesystem::is_regular_file(file, none)) return false;
   std::ifstream stream(file, std::ios::binary);
   std::array<char, 16> head{};
   stream.read(head.data(), head.size());

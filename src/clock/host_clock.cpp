@@ -20,7 +20,7 @@ void HostClock::look(const ClockReading& now) {
 
 std::int64_t HostClock::to_monotonic(std::int64_t real_ns, const ClockReading& now) {
   look(now);
-  std::int64_t best = now.monotonic_ns, least_age = kLongestWait;
+  std::int64_t best = now.monotonic_ns, least_age = kOldest;
   const auto consider = [&](std::int64_t difference) {
     // Negative by no more than the jitter: of this very moment.
     const std::int64_t age = now.monotonic_ns - (real_ns - difference);

@@ -9,6 +9,7 @@
 #include "key_reader.hpp"
 #include "mistakes.hpp"
 #include "scree/config/keys.hpp"
+#include "scree/core/byte_order_mark.hpp"
 #include "scree/core/read_file.hpp"
 
 namespace scree {
@@ -31,11 +32,55 @@ bool has_short_lines(std::string_view toml, const std::string& origin, Mistakes&
   return true;
 }
 
+/// The end of the string that begins at `at`, or of its line where it has none.
+std::size_t end_of_string(std::string_view toml, std::size_t at) {
+  const char quote = toml[at];
+  const std::string_view mark = toml.substr(at, 3);
+  const bool is_long = mark == std::string(3, quote);
+  for (at += is_long ? 3 : 1; at < toml.size(); ++at) {
+    if (is_long ? toml.substr(at, 3) == mark : toml[at] == quote) return at + (is_long ? 3 : 1);
+    if (toml[at] == '\\' && quote == '"') ++at;
+    if (at < toml.size() && toml[at] == '\n' && !is_long) return at;
+  }
+  return toml.size();
+}
+
+/// Elsewhere a quote is a mistake, and what follows it is no string.
+bool begins_string(std::string_view toml, std::size_t at) {
+  const bool is_quote = toml[at] == '"' || toml[at] == '\'';
+  return is_quote &&
+         (at == 0 || std::string_view(" \t\r\n=,[{.").find(toml[at - 1]) != std::string_view::npos);
+}
+
+/// Outside strings and remarks TOML is ASCII. What the library does with other characters there is
+/// undefined (toml++ 3.3, is_non_ascii_horizontal_whitespace()).
+bool is_ascii_outside_strings(std::string_view toml, const std::string& origin,
+                              Mistakes& mistakes) {
+  for (std::size_t at = toml.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
+       at < toml.size();) {
+    if (toml[at] == '#') {
+      at = std::min(toml.find('\n', at), toml.size());
+    } else if (begins_string(toml, at)) {
+      at = end_of_string(toml, at);
+    } else if (static_cast<unsigned char>(toml[at]) < 0x80) {
+      ++at;
+    } else {
+      const auto line =
+          1 + std::count(toml.begin(), toml.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+      mistakes.add(origin, static_cast<std::uint32_t>(line),
+                   "a letter that is not of ASCII stands outside quotes and remarks");
+      return false;
+    }
+  }
+  return true;
+}
+
 /// Reads one file's text over the configuration. @return whether it is TOML
 bool read_over(std::string_view toml, const std::string& origin, Configuration& configuration,
                Mistakes& mistakes) {
   mistakes.begin_file(origin);
   if (!has_short_lines(toml, origin, mistakes)) return false;
+  if (!is_ascii_outside_strings(toml, origin, mistakes)) return false;
   try {
     const toml::table root = toml::parse(toml, origin);
     KeyReader reader(root, origin, configuration, mistakes);

@@ -6,45 +6,49 @@
 #include "scree/publish/multicast.hpp"
 
 namespace scree {
+namespace {
 
-Result<Publisher> Publisher::open(const std::string& lcm_url, std::size_t max_obstacles) {
+template <class Message>
+void encode_on(const char* channel, const Message& message, EncodedMessage& encoded) {
+  encoded.channel = channel;
+  encoded.bytes.resize(static_cast<std::size_t>(message.getEncodedSize()));
+  message.encode(encoded.bytes.data(), 0, static_cast<int>(encoded.bytes.size()));
+}
+
+}  // namespace
+
+MessageEncoder::MessageEncoder(std::size_t max_obstacles) {
+  make_room(max_obstacles, list_);
+  make_room(grid_);
+  longest_ = static_cast<std::size_t>(std::max(list_.getEncodedSize(), grid_.getEncodedSize()));
+}
+
+void MessageEncoder::encode(const ObstacleList& list, EncodedMessage& encoded) {
+  to_message(list, list_);
+  encode_on(kObstaclesChannel, list_, encoded);
+}
+
+void MessageEncoder::encode(const ObstacleGrid& grid, EncodedMessage& encoded) {
+  to_message(grid, grid_);
+  encode_on(kGridChannel, grid_, encoded);
+}
+
+void MessageEncoder::encode(const health_t& health, EncodedMessage& encoded) {
+  encode_on(kHealthChannel, health, encoded);
+}
+
+Result<Publisher> Publisher::open(const std::string& lcm_url) {
   if (const auto routed = check_multicast(lcm_url); !routed) {
     return tl::make_unexpected(routed.error());
   }
   lcm_t* lcm = lcm_create(lcm_url.c_str());
   if (lcm == nullptr) return fail("LCM cannot open " + lcm_url);
-  return Publisher(lcm, max_obstacles);
+  return Publisher(lcm);
 }
 
-Publisher::Publisher(lcm_t* lcm, std::size_t max_obstacles) : lcm_(lcm) {
-  make_room(max_obstacles, list_);
-  make_room(grid_);
-  encoded_.resize(
-      static_cast<std::size_t>(std::max(list_.getEncodedSize(), grid_.getEncodedSize())));
-}
-
-bool Publisher::publish(const ObstacleList& list) {
-  to_message(list, list_);
-  return send(kObstaclesChannel, list_);
-}
-
-bool Publisher::publish(const ObstacleGrid& grid) {
-  to_message(grid, grid_);
-  return send(kGridChannel, grid_);
-}
-
-bool Publisher::publish(const health_t& health) {
-  return send(kHealthChannel, health);
-}
-
-template <class Message>
-bool Publisher::send(const char* channel, const Message& message) {
-  const auto size = static_cast<std::size_t>(message.getEncodedSize());
-  if (encoded_.size() < size) encoded_.resize(size);
-  const int encoded = message.encode(encoded_.data(), 0, static_cast<int>(size));
-  last_size_ = static_cast<std::size_t>(std::max(encoded, 0));
-  return encoded >= 0 &&
-         lcm_publish(lcm_.get(), channel, encoded_.data(), static_cast<unsigned int>(encoded)) == 0;
+bool Publisher::send(const EncodedMessage& message) {
+  return lcm_publish(lcm_.get(), message.channel, message.bytes.data(),
+                     static_cast<unsigned int>(message.bytes.size())) == 0;
 }
 
 }  // namespace scree

@@ -1,6 +1,8 @@
 #include "scree/terrain/mapper.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <limits>
 
 #include "scree/core/rotation.hpp"
@@ -11,6 +13,11 @@ namespace {
 constexpr float kSurfel = 0.3F;                 // edge, metres
 constexpr double kMaxHeightError = 0.08;        // metres that a point may be too high or too low
 constexpr double kInitialAttitudeError = 0.01;  // rad, when the IMU falls silent
+
+/// A power of two.
+int cells_across(double metres) {
+  return static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::ceil(metres / kSurfel))));
+}
 
 }  // namespace
 
@@ -26,7 +33,7 @@ Mapper::Mapper(const Settings& settings)
       sweep_(static_cast<std::size_t>(settings.memory.sweep_points)),
       levelling_(settings.imu.translation),
       registration_(static_cast<std::size_t>(settings.memory.sweep_points)),
-      surfels_(kSurfel),
+      surfels_(kSurfel, cells_across(2 * settings.map.registration_reach)),
       moving_(static_cast<std::size_t>(settings.memory.sweep_points)),
       map_(settings.map, static_cast<std::size_t>(settings.memory.map_voxels)) {}
 

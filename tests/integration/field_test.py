@@ -3,7 +3,9 @@
 import json
 import math
 import os
+import re
 import shutil
+import socket
 import struct
 import sys
 
@@ -90,6 +92,19 @@ class FieldTest(ProgramTest):
         self.assertGreater(len(counts["ta.log"]), 10)
         self.assertEqual(counts["ta.log"], counts["bom.log"])
 
+    def test_times_that_are_differences_are_said(self):
+        with open(self.field("candump_kinds/ta.log")) as file:
+            frames = [re.match(r" \((.*?)\)(.*)", line).groups() for line in file]
+        lines, before = [], float(frames[0][0])
+        for stamp, frame in frames:
+            lines.append(f" ({float(stamp) - before:010.6f}){frame}\n")
+            before = float(stamp)
+        log = self.write("td.log", "".join(lines))
+        config = self.field("candump_kinds/enc.toml")
+        arguments = ["--sensor", "encoder", "--config", config, "--out", self.path("td.csv")]
+        said = self.done(SCREE, "decode", log, *arguments).stderr
+        self.assertIn("candump -td", said)
+
     def test_a_log_by_another_clock_is_said_with_both_times(self):
         log = self.field("can_log_other_clock/tz.can.log")
         drive = os.path.join(DATA, "captures/interop")
@@ -118,20 +133,54 @@ class FieldTest(ProgramTest):
         result = self.run_to_end(SCREE, "info", os.path.join(folder, "cap.pcap.gz"))
         self.assert_fails(result, "is packed with gzip: unpack it first")
 
-    def test_a_step_of_the_hosts_clock_ahead_changes_nothing(self):
+    def test_a_step_of_the_hosts_clock_of_any_size_changes_nothing(self):
         make = self.field("clock_step/make.py")
-        drive = os.path.join(DATA, "captures/interop")
+        drive = os.path.join(DATA, "captures", "interop")
         last = {}
-        for step in ("0", "0.4", "2"):
+        for step in ("0", "0.05", "2", "86400", "-0.3", "-5", "-86400"):
             out = self.path("step" + step)
             self.done(sys.executable, make, drive, out, step)
             result = self.done(SCREE, "detect", out)
-            last[step] = json.loads(result.stdout.splitlines()[-1])
+            lines = [json.loads(line) for line in result.stdout.splitlines()]
+            stamps = [line["stamp_ns"] for line in lines]
+            self.assertEqual(stamps, sorted(stamps), step)
+            last[step] = lines[-1]
             self.assertEqual("the host's clock was set" in result.stderr, step != "0", step)
         for step, line in last.items():
             apart = math.dist(line["pose"]["p"], last["0"]["pose"]["p"])
-            self.assertLess(apart, 0.02, step)
+            self.assertLess(apart, 0.005, step)
             self.assertEqual(len(line["obstacles"]), len(last["0"]["obstacles"]), step)
+
+    def test_every_command_takes_a_step_of_the_hosts_clock_out(self):
+        make = self.field("clock_step/make.py")
+        drive = os.path.join(DATA, "captures", "interop")
+        for step in ("0", "-5", "3600"):
+            out, part = self.path("step" + step), self.path("part" + step)
+            self.done(sys.executable, make, drive, out, step)
+            info = self.info_of(out)
+            self.assertAlmostEqual(info["seconds"], 8, delta=0.1, msg=step)
+            self.assertAlmostEqual(info["rpm"], 600, delta=1, msg=step)
+            self.assertEqual(info["clock"]["host_steps"], int(step != "0"))
+            self.assertEqual(info["encoder"]["refused"], {}, step)
+            self.done(SCREE, "slice", out, part, "--from", "2", "--to", "6")
+            self.assertEqual(self.info_of(part)["packets"], 3014, step)
+            for sensor, rows in (("imu", 799), ("encoder", 799)):
+                csv = self.path(sensor + step)
+                self.done(SCREE, "decode", out, "--sensor", sensor, "--out", csv)
+                with open(csv) as file:
+                    times = [int(line.split(",")[0]) for line in file.readlines()[1:]]
+                self.assertEqual(times, sorted(times), step)
+                self.assertGreater(len(times), rows)
+                self.assertLess(times[-1] - times[0], 9e9, step)
+
+    def test_a_capture_is_replayed_over_a_step_of_the_hosts_clock(self):
+        capture = self.field("replay_clock_jump/forward_1h.pcap")
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as listener:
+            listener.bind(("127.0.0.1", 0))
+            address = "127.0.0.1:%d" % listener.getsockname()[1]
+            result = self.run_to_end(SCREE, "replay", capture, "--address", address)
+        self.assertIn("sent 150 data packets", result.stderr)
+        self.assertEqual(self.info("replay_clock_jump/forward_1h.pcap")["rpm"], 600)
 
     def test_headers_that_other_programs_write_are_read(self):
         folder = self.field("pcd_headers")

@@ -12,7 +12,8 @@ class Lines:
 
     def __init__(self, stream):
         self.lines = []
-        threading.Thread(target=self._read, args=[stream], daemon=True).start()
+        self.thread = threading.Thread(target=self._read, args=[stream], daemon=True)
+        self.thread.start()
 
     def _read(self, stream):
         for line in stream:

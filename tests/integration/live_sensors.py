@@ -112,17 +112,23 @@ class Player:
         events = []
         for stamp, frame in pcap_records(os.path.join(capture, "lidar.pcap")):
             to = ("127.0.0.1", ports[struct.unpack_from(">H", frame, 36)[0]])
-            events.append((stamp, lambda data=frame[42:], to=to: self.udp.sendto(data, to)))
+            events.append((stamp, lambda data=frame[42:], to=to: self.send_lidar(data, to)))
         for stamp, data in pcap_records(os.path.join(capture, "imu.pcap")):
-            events.append((stamp, lambda data=data: mti.send(data)))
+            events.append((stamp, lambda data=data: self.send_imu(data)))
         if can is not None:
             for stamp, frame in can_frames(os.path.join(capture, "can.log")):
                 events.append((stamp, lambda frame=frame: can.send(frame)))
         self.events = sorted(events, key=lambda event: event[0])
-        self.loop = loop
+        self.mti, self.loop = mti, loop
         self.stopped = threading.Event()
         self.thread = threading.Thread(target=self._play, daemon=True)
         self.thread.start()
+
+    def send_lidar(self, data, to):
+        self.udp.sendto(data, to)
+
+    def send_imu(self, data):
+        self.mti.send(data)
 
     def wait(self):
         self.thread.join()

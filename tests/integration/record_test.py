@@ -93,6 +93,43 @@ class RecordTest(ProgramTest):
         self.assert_same_values("lidar")
         self.assert_same_values("imu")
 
+    def test_killed_before_the_imu_says_anything_it_is_a_capture(self):
+        self.simulate(1)
+        process = self.record()
+        player = Player(self.original, self.port, self.position_port, self.mti)
+        player.wait()
+        player.stop()
+        time.sleep(0.3)
+        process.kill()
+        process.communicate()
+        self.done(SCREE, "info", self.recording)
+        lists = self.done(SCREE, "detect", self.recording, "--out", self.path("lists.jsonl"))
+        self.assertIn("the file holds no bytes", lists.stderr)
+
+    def test_a_folder_that_is_removed_meanwhile_is_no_success(self):
+        process = self.record()
+        shutil.rmtree(self.recording)
+        _, said = process.communicate(timeout=PATIENCE)
+        self.assertEqual(process.returncode, 1, said)
+        self.assertIn("is gone: was its folder removed?", said.splitlines()[-1])
+
+    def test_who_reads_its_words_may_go_or_stall(self):
+        self.simulate(1)
+        process = self.record()
+        process.stderr.close()
+        self.play()
+        self.assertIsNone(process.poll())
+        process.terminate()
+        self.assertEqual(process.wait(timeout=PATIENCE), 0)
+        process.stderr = open(os.devnull)
+        self.assert_same_values("lidar")
+
+    def test_asked_to_end_while_it_starts_it_ends_by_itself(self):
+        process = self.record()
+        process.terminate()
+        self.assertEqual(process.wait(timeout=PATIENCE), 1)  # nothing has come
+        self.assertIn("nothing came from any sensor", process.stderr.read())
+
     def test_files_that_the_configuration_names_come_along(self):
         os.mkdir(self.path("robot"))
         dbc = self.write("robot/wheel.dbc", DBC)

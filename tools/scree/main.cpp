@@ -1,5 +1,6 @@
 #include <cstdio>
 #include <exception>
+#include <new>
 #include <sstream>
 #include <string>
 
@@ -58,6 +59,8 @@ int main(int argc, char** argv) {
       return kUsage;
     }
     if (app.exit(error) != 0) return kUsage;
+  } catch (const std::bad_alloc&) {
+    return failed("there is not enough memory (`ulimit -v`, `free -m`)");
   } catch (const std::exception& error) {
     return failed(error.what());
   }

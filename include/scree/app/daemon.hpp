@@ -23,6 +23,7 @@ class Daemon {
 public:
   /// Binds the ports, opens LCM and starts the threads. The caller blocks the signals that it waits
   /// for before, because threads inherit what is blocked.
+  /// @throw std::system_error where this process may have no more threads or descriptors
   /// @param sensors where samples of the motion go, its consumer the thread of `process`; without
   /// it neither IMU nor encoder are read
   static Result<std::unique_ptr<Daemon>> start(const Settings& settings, SweepProcessor process,

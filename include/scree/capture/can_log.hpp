@@ -46,7 +46,12 @@ struct CanLogCounters {
   std::uint64_t frames = 0;                               ///< handed out
   std::array<std::uint64_t, kCanLineRefusals> refused{};  ///< lines by CanLineRefusal; [none] is 0
 
+  std::uint64_t not_later = 0;  ///< frames whose time is not after that of the frame before
+  std::int64_t latest_ns = 0;   ///< the latest time of a frame
+
   std::uint64_t all_refused() const;
+  /// Whether the times are no times but differences, as `candump -td` writes them.
+  bool has_differences() const;
 };
 
 /// Reads a capture's can.log. Empty lines and those that begin with # are passed over.
@@ -66,6 +71,7 @@ private:
   std::array<char, 512> line_{};  ///< twice the longest line that a frame needs
   std::uint64_t position_ = 0;
   bool is_first_ = true;
+  std::int64_t last_ns_ = 0;
   CanLogCounters counters_;
 };
 
@@ -76,7 +82,7 @@ public:
 
   void write(const CanFrame& frame, std::string_view interface);
   /// Writes out what is buffered: the file is whole from here on, whatever happens. An error (a
-  /// full disk) shows itself here or in close().
+  /// full disk, a file that was removed) shows itself here or in close().
   Result<void> flush();
   Result<void> close();
 

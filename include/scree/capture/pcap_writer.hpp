@@ -37,7 +37,7 @@ public:
   void write(const PcapRecord& record);
 
   /// Writes out what is buffered: the file is whole from here on, whatever happens. An error (a
-  /// full disk) shows itself here or in close().
+  /// full disk, a file that was removed) shows itself here or in close().
   Result<void> flush();
   Result<void> close();
 

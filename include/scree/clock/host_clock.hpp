@@ -25,11 +25,13 @@ class HostClock {
 public:
   /// A changed difference within this is the reading's.
   static constexpr std::int64_t kJitter = 100'000;
-  /// Stamps wait to be read for less than this.
+  /// After a step stamps from before it wait to be read for less than this.
   static constexpr std::int64_t kLongestWait = 2'000'000'000;
+  /// Stamps that waited while the process was paused are no older than this.
+  static constexpr std::int64_t kOldest = 3600 * std::int64_t{1'000'000'000};
 
   /// Monotonic time of a wall-clock stamp that was taken before `now`. A stamp that is older than
-  /// kLongestWait or of the future is given the time of `now`.
+  /// kOldest or of the future is given the time of `now`.
   std::int64_t to_monotonic(std::int64_t real_ns, const ClockReading& now);
   /// The same in wall-clock time, by the wall clock as it was set at first: what a recording keeps,
   /// in which time must run on.

@@ -2,11 +2,12 @@
 
 #include <lcm/lcm.h>
 
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <scree/grid_t.hpp>
 #include <scree/health_t.hpp>
 #include <scree/obstacle_list_t.hpp>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -20,35 +21,46 @@ inline constexpr const char* kObstaclesChannel = "SCREE_OBSTACLES";
 inline constexpr const char* kGridChannel = "SCREE_GRID";
 inline constexpr const char* kHealthChannel = "SCREE_HEALTH";
 
-/// Sends obstacle lists, grids and health on LCM. One thread may use it. Its buffers are sized when
-/// it is made: sending a grid or a list of up to max_obstacles allocates nothing.
+/// A message as LCM sends it.
+struct EncodedMessage {
+  const char* channel = "";
+  std::vector<std::uint8_t> bytes;
+};
+
+/// Encodes obstacle lists, grids and health. One thread may use it. Grids and lists of up to
+/// max_obstacles allocate nothing in a message that has room for longest() bytes.
+class MessageEncoder {
+public:
+  explicit MessageEncoder(std::size_t max_obstacles);
+
+  std::size_t longest() const { return longest_; }
+  void encode(const ObstacleList& list, EncodedMessage& encoded);
+  void encode(const ObstacleGrid& grid, EncodedMessage& encoded);
+  static void encode(const health_t& health, EncodedMessage& encoded);
+
+private:
+  obstacle_list_t list_{};
+  grid_t grid_{};
+  std::size_t longest_;
+};
+
+/// Sends messages on LCM. One thread may use it.
 class Publisher {
 public:
   /// Opens an LCM provider; the error says what to do where multicast has no route.
-  static Result<Publisher> open(const std::string& lcm_url, std::size_t max_obstacles);
+  static Result<Publisher> open(const std::string& lcm_url);
 
-  /// False when LCM did not take the message.
-  bool publish(const ObstacleList& list);
-  bool publish(const ObstacleGrid& grid);
-  bool publish(const health_t& health);
-
-  /// The message that was published last, as it was sent. Valid until the next one.
-  std::span<const std::uint8_t> last() const { return std::span(encoded_).first(last_size_); }
+  /// False when LCM did not take the message. It may block: as long as the network's queue is full,
+  /// or as a server of tcpq reads nothing.
+  bool send(const EncodedMessage& message);
 
 private:
   struct Destroy {
     void operator()(lcm_t* lcm) const { lcm_destroy(lcm); }
   };
-
-  Publisher(lcm_t* lcm, std::size_t max_obstacles);
-  template <class Message>
-  bool send(const char* channel, const Message& message);
+  explicit Publisher(lcm_t* lcm) : lcm_(lcm) {}
 
   std::unique_ptr<lcm_t, Destroy> lcm_;
-  obstacle_list_t list_{};
-  grid_t grid_{};
-  std::vector<std::uint8_t> encoded_;
-  std::size_t last_size_ = 0;
 };
 
 }  // namespace scree

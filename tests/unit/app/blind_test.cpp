@@ -32,7 +32,8 @@ struct Robot {
     }
   }
   void send() {
-    lidar.last_datagram_ns = lidar.last_packet_ns = now_ns;
+    lidar.last_datagram_ns = now_ns;
+    if (is_understood) lidar.last_packet_ns = now_ns;
     lidar.without_return_ns = has_returns ? 0 : lidar.without_return_ns + kMillisecond;
     if (turns && now_ns / kMillisecond % turn_ms == 0) lidar.last_sweep_ns = now_ns;
   }
@@ -43,7 +44,7 @@ struct Robot {
     } else if (now_ns - lidar.last_sweep_ns >= latency_ms * kMillisecond) {
       detector.last_loop_ns = now_ns;
       listed_sweep_ns = lidar.last_sweep_ns;
-      if (lists_go_out) detector.last_list_ns = now_ns;
+      if (lists_go_out) detector.last_list_ns = listed_sweep_ns;
       latency_ms = least_latency_ms + (latency_ms + 37) % (most_latency_ms - least_latency_ms);
     }
   }
@@ -51,7 +52,7 @@ struct Robot {
 
   std::int64_t turn_ms, least_latency_ms = 10, most_latency_ms, latency_ms = 10;
   bool has_packets = true, has_returns = true, turns = true, detector_works = true,
-       lists_go_out = true;
+       lists_go_out = true, is_understood = true;
   bool has_seen = false, was_blind_again = false;
   std::int64_t now_ns = 5'000 * kMillisecond, listed_sweep_ns = 0;
   LidarStatus lidar;
@@ -85,6 +86,9 @@ TEST(Blind, WhateverStopsIsSaidWithin300Ms) {
     const Said packets = when_stops(&Robot::has_packets, turn_ms);
     EXPECT_LE(packets.after_ms, 300);
     EXPECT_THAT(packets.reason, HasSubstr("no packets on UDP port 2368"));
+    const Said understood = when_stops(&Robot::is_understood, turn_ms);
+    EXPECT_LE(understood.after_ms, 300);
+    EXPECT_THAT(understood.reason, HasSubstr("are not packets of a vlp16"));
     const Said returns = when_stops(&Robot::has_returns, turn_ms);
     EXPECT_LE(returns.after_ms, 300);
     EXPECT_THAT(returns.reason, HasSubstr("is it covered"));
@@ -94,14 +98,51 @@ TEST(Blind, WhateverStopsIsSaidWithin300Ms) {
     const Said detector = when_stops(&Robot::detector_works, turn_ms);
     EXPECT_LE(detector.after_ms, 300);
     EXPECT_THAT(detector.reason,
-                AnyOf(HasSubstr("the detector is late"), HasSubstr("no lists go out")));
+                AnyOf(HasSubstr("the detector is late"), HasSubstr("no list of the last half")));
   }
 }
 
 TEST(Blind, ListsThatDoNotGoOutAreSaidThoughAllElseWorks) {
   const Said said = when_stops(&Robot::lists_go_out, 100);
-  EXPECT_LE(said.after_ms, 420);
-  EXPECT_THAT(said.reason, HasSubstr("no lists go out"));
+  EXPECT_LE(said.after_ms, 520);
+  EXPECT_THAT(said.reason, HasSubstr("no list of the last half second has gone out"));
+}
+
+TEST(Blind, FromTheStartOn) {
+  Robot robot(100);
+  robot.has_packets = robot.detector_works = false;
+  for (int i = 0; i < 500; ++i) {
+    robot.go_on(20);
+    EXPECT_TRUE(robot.is_blind());
+  }
+  EXPECT_THAT(robot.health.reason, HasSubstr("nothing has come"));
+}
+
+TEST(Blind, AfterAPauseWithTheFirstLook) {
+  Robot robot(100);
+  robot.go_on(1000);
+  EXPECT_FALSE(robot.is_blind());
+  // What waited meanwhile is of then, and so are the lists that are made of it.
+  robot.now_ns += 4 * kSecond;
+  robot.watch.update(robot.now_ns, robot.lidar, {}, {}, robot.detector, robot.health);
+  EXPECT_TRUE(robot.is_blind());
+  robot.lidar.last_datagram_ns = robot.lidar.last_packet_ns = robot.lidar.last_sweep_ns =
+      robot.detector.last_loop_ns = robot.now_ns;
+  robot.watch.update(robot.now_ns, robot.lidar, {}, {}, robot.detector, robot.health);
+  EXPECT_TRUE(robot.is_blind());
+  EXPECT_THAT(robot.health.reason, HasSubstr("no list of the last half second"));
+  robot.go_on(200);
+  EXPECT_FALSE(robot.is_blind());
+}
+
+TEST(Blind, ASettingThatSpoilsTheListsIsSaidWithTheNextLook) {
+  Robot robot(100);
+  robot.go_on(1000);
+  robot.detector.setup.count = 1;
+  robot.detector.setup.findings[0] = {
+      .fault = SetupFault::encoder_scale, .is_grave = true, .off = 2, .set = {0.0001, 0, 0}};
+  robot.go_on(20);
+  EXPECT_TRUE(robot.is_blind());
 }
 
 TEST(Blind, ASlowTurnWithUnequalLatenciesIsNot) {

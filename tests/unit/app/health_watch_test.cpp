@@ -196,6 +196,12 @@ TEST_F(HealthWatchTest, SweepsThatWaitedInVainAreSaid) {
   EXPECT_THAT(pass(20), HasSubstr("W sweeps went on without the samples of IMU or encoder"));
 }
 
+TEST_F(HealthWatchTest, MessagesThatLcmDoesNotTakeAreSaid) {
+  drive(50);
+  detector_.not_sent = 3;
+  EXPECT_THAT(pass(20), HasSubstr("W messages that LCM did not take"));
+}
+
 TEST_F(HealthWatchTest, MotionThatIsNotBelievedIsSaid) {
   drive(50);
   detector_.slips = 2;
@@ -309,7 +315,7 @@ TEST_F(HealthWatchTest, NamesASettingThatTheSensorsContradict) {
   const auto with = [this](const SetupReport& setup) {
     now_ += 100 * kMillisecond;
     packet();
-    detector_ = {now_, now_, 0, 0, 0, setup};
+    detector_ = {now_, now_, 0, 0, 0, 0, setup};
     return update();
   };
   EXPECT_THAT(with(wrong), HasSubstr("W encoder.translation looks 0.30 m"));
@@ -329,7 +335,7 @@ TEST_F(HealthWatchTest, IsBlindWhereASettingSpoilsTheLists) {
       .fault = SetupFault::encoder_scale, .is_grave = true, .off = 2, .set = {0.0001, 0, 0}};
   now_ += 100 * kMillisecond;
   packet();
-  detector_ = {now_, now_, 0, 0, 0, wrong};
+  detector_ = {now_, now_, 0, 0, 0, 0, wrong};
   EXPECT_THAT(update(), HasSubstr("W blind: encoder.scale looks 2.0 times too large: set 0.0001"));
   EXPECT_EQ(health_.state, health_t::BLIND);
 }

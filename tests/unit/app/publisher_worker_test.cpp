@@ -5,11 +5,13 @@
 #include <atomic>
 #include <chrono>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <thread>
 
 #include "scree/clock/clocks.hpp"
 #include "scree/publish/subscriber.hpp"
+#include "unit/app/deaf_server.hpp"
 #include "unit/free_port.hpp"
 
 namespace scree {
@@ -17,7 +19,7 @@ namespace {
 
 class PublisherWorkerTest : public testing::Test {
 protected:
-  PublisherWorkerTest() {
+  explicit PublisherWorkerTest(const std::string& lcm_url = "") {
     const std::string url = free_lcm_url();
     auto subscriber = Subscriber::open(
         url,
@@ -30,9 +32,14 @@ protected:
           lists_before_grid_ = lists_received_;
           grid_ = message;
         });
-    auto publisher = Publisher::open(url, 1);
+    auto publisher = Publisher::open(lcm_url.empty() ? url : lcm_url);
     EXPECT_TRUE(subscriber && publisher);
     subscriber_ = std::move(*subscriber);
+    settings_.stop.hold = 0.01;
+    lines_.stop = [this](bool is_on) {
+      is_stopped_ = is_on;
+      return true;
+    };
     lines_.heartbeat = [this](bool) {
       ++heartbeats_;
       return true;
@@ -82,6 +89,7 @@ protected:
   ObstacleListPool lists_{4, [] { return TimedObstacleList(1); }};
   ThreadWatchdog watchdog_;
   std::atomic<int> heartbeats_ = 0;
+  std::atomic<bool> is_stopped_ = true;  // as the chip is opened
   int lists_received_ = 0;
   obstacle_list_t list_{};
   grid_t grid_{};
@@ -110,10 +118,37 @@ TEST_F(PublisherWorkerTest, AGridGoesOutAfterItsListAndWithItsStamp) {
 }
 
 TEST_F(PublisherWorkerTest, AnOldListGoesOutButIsNoSight) {
-  push_list(HealthWatch::kOldSweep + kSecond);
+  push_list(HealthWatch::kOldData + kSecond);
   ASSERT_TRUE(until([&] { return lists_received_ == 1 && health_.lists_published == 1; }));
   EXPECT_EQ(health_.state, health_t::BLIND);
-  EXPECT_EQ(health_.reason, "no sweep has got through the detector yet");
+  EXPECT_EQ(health_.reason, "sweeps come, but no list of the last half second has gone out");
+}
+
+/// Its LCM server takes what fits into the sockets, and nothing after that.
+class BlockedLcmTest : public PublisherWorkerTest {
+protected:
+  BlockedLcmTest() : BlockedLcmTest(std::make_unique<DeafServer>()) {}
+
+private:
+  explicit BlockedLcmTest(std::unique_ptr<DeafServer> server)
+      : PublisherWorkerTest(server->url()), server_(std::move(server)) {}
+  std::unique_ptr<DeafServer> server_;
+};
+
+TEST_F(BlockedLcmTest, TheStopLineComesOnAllTheSame) {
+  const std::int64_t end_ns = steady_ns() + 120 * kSecond;
+  bool has_seen = false;
+  std::int64_t cleared_ns = steady_ns();
+  // Lists with the largest grids fill the sockets up soon.
+  while (steady_ns() < end_ns && !(has_seen && is_stopped_)) {
+    if (lists_.fill().waiting < 4) push_list(0, ObstacleGrid::kMostCells);
+    if (!is_stopped_) has_seen = true;
+    if (!is_stopped_) cleared_ns = steady_ns();
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_TRUE(has_seen && is_stopped_);
+  EXPECT_LT(steady_ns() - cleared_ns, kSecond) << "and the threads go on";
+  EXPECT_EQ(worker_->sentence().substr(0, 5), "blind");
 }
 
 TEST_F(PublisherWorkerTest, HealthHasTheCountsOfTheOtherThreads) {

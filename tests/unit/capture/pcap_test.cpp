@@ -127,7 +127,7 @@ TEST(Pcap, WhatIsNoCaptureIsOneSentence) {
   EXPECT_THAT(read_all(folder.write("empty.pcap", "")).error, HasSubstr("is empty"));
   EXPECT_THAT(read_all(folder.write("foreign.pcap", "%PDF-1.7 and so on and on and on")).error,
               HasSubstr("cannot be read as a pcap or pcapng file"));
-  EXPECT_THAT(read_all("/tmp").error, HasSubstr("not a file"));
+  EXPECT_THAT(read_all("/tmp").error, HasSubstr("is no regular file"));
 }
 
 TEST(Pcap, SnapLengthIsCounted) {

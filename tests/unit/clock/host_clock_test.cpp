@@ -86,8 +86,16 @@ TEST(HostClock, AStampThatMakesNoSenseIsOfNow) {
   Host host;
   HostClock clock;
   for (const std::int64_t stamp :
-       {std::int64_t{0}, host.real_ns() - 10 * kSecond, host.real_ns() + kSecond}) {
+       {std::int64_t{0}, host.real_ns() - 7200 * kSecond, host.real_ns() + kSecond}) {
     EXPECT_EQ(clock.to_monotonic(stamp, host.now()), host.monotonic_ns);
+  }
+}
+
+TEST(HostClock, AStampThatWaitedWhileTheProcessWasPausedIsAsOldAsItIs) {
+  Host host;
+  HostClock clock;
+  for (const std::int64_t age : {4 * kSecond, 600 * kSecond}) {
+    EXPECT_EQ(clock.to_monotonic(host.real_ns() - age, host.now()), host.monotonic_ns - age);
   }
 }
 

@@ -129,6 +129,22 @@ TEST(Settings, DepthAndLengthOfKeysAreBounded) {
   EXPECT_THAT(error_of(times(100000, "[[a]]\nb = 1\n")), HasSubstr("a is not a setting"));
 }
 
+TEST(Settings, LettersBeyondAsciiStandInStringsAndRemarksOnly) {
+  const auto accepts = [](const std::string& toml) {
+    return parse_settings(toml, "robot.toml").has_value();
+  };
+  EXPECT_TRUE(accepts("\xEF\xBB\xBF# Gr\u00F6\u00DFe\n[imu]\ndevice = \"/dev/\u02A2\" # \u02A2\n"));
+  EXPECT_TRUE(accepts("[imu]\ndevice = \"a\\\"\u02A2\"\n"));
+  EXPECT_TRUE(accepts("[imu]\ndevice = '\\'\n[lidar]\nport = 1\n"));
+  EXPECT_TRUE(accepts("[imu]\ndevice = \"\"\"\n\u02A2 # \"\"\"\n"));
+  for (const char* outside : {"[imu]\nrate = \u02A2\n", "[imu]\n\u02A2 = 1\n", "[\u2003imu]\n",
+                              "[imu]\ndevice = \"a\"\u02A2\n", "[imu]\n\nrate = 1\uFEFF\n"}) {
+    const auto settings = parse_settings(outside, "robot.toml");
+    ASSERT_FALSE(settings) << outside;
+    EXPECT_THAT(settings.error().message, HasSubstr("not of ASCII")) << outside;
+  }
+}
+
 TEST(Settings, ContradictionsOfTheEncoderAreOneSentence) {
   EXPECT_THAT(error_of("[encoder]\nstart_bit = 500\n"), HasSubstr("beyond the 64 bytes"));
   EXPECT_THAT(error_of("[encoder]\nstart_bit = 487\nbyte_order = \"big_endian\"\n"), "no error");

@@ -135,7 +135,9 @@ private:
   Message receive(Publisher& publisher, const Sent& sent, std::optional<Message>& message) {
     message.reset();
     for (int second = 0; second < 10 && !message; ++second) {
-      EXPECT_TRUE(publisher.publish(sent));
+      EncodedMessage encoded;
+      encoder_.encode(sent, encoded);
+      EXPECT_TRUE(publisher.send(encoded));
       subscriber_->handle(1000);
     }
     EXPECT_TRUE(message);
@@ -143,6 +145,7 @@ private:
   }
 
   std::unique_ptr<Subscriber> subscriber_;
+  MessageEncoder encoder_{1000};
   std::optional<obstacle_list_t> list_;
   std::optional<health_t> health_;
   std::optional<grid_t> grid_;
@@ -151,7 +154,7 @@ private:
 TEST(Publisher, ListsComeThroughUnchanged) {
   const std::string url = free_lcm_url();
   Receiver receiver(url);
-  auto publisher = Publisher::open(url, 1000);
+  auto publisher = Publisher::open(url);
   ASSERT_TRUE(publisher) << publisher.error().message;
   // 1000 obstacles do not fit in one datagram: LCM sends them in fragments.
   for (const std::size_t size : {std::size_t{2}, std::size_t{0}, std::size_t{1000}}) {
@@ -165,7 +168,7 @@ TEST(Publisher, ListsComeThroughUnchanged) {
 TEST(Publisher, GridsComeThroughUnchanged) {
   const std::string url = free_lcm_url();
   Receiver receiver(url);
-  auto publisher = Publisher::open(url, 1);
+  auto publisher = Publisher::open(url);
   ASSERT_TRUE(publisher) << publisher.error().message;
   for (const std::size_t side : {ObstacleGrid::kMostCells, std::size_t{3}}) {
     const ObstacleGrid sent = grid_of(side, side - side % 2);
@@ -190,7 +193,7 @@ TEST(Publisher, GridsComeThroughUnchanged) {
 TEST(Publisher, HealthComesThrough) {
   const std::string url = free_lcm_url();
   Receiver receiver(url);
-  auto publisher = Publisher::open(url, 1);
+  auto publisher = Publisher::open(url);
   ASSERT_TRUE(publisher) << publisher.error().message;
   health_t health{};
   health.state = health_t::BLIND;
@@ -230,7 +233,7 @@ TEST(Multicast, TheTextOfAUrlIsCheckedWithoutARoute) {
 }
 
 TEST(Publisher, AnUnknownProviderIsRefused) {
-  const auto publisher = Publisher::open("pigeon://coop", 1);
+  const auto publisher = Publisher::open("pigeon://coop");
   ASSERT_FALSE(publisher);
   EXPECT_THAT(publisher.error().message, HasSubstr("pigeon://coop"));
 }

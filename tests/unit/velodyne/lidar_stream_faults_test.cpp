@@ -50,6 +50,27 @@ TEST(LidarStreamFaults, CountsLossDuplicatesAndLatePackets) {
   EXPECT_EQ(sensor.counters().accepted, 101U);
 }
 
+TEST(LidarStreamFaults, OfTwoSensorsWithOneAddressOneIsTaken) {
+  // The second one's clock is set by the same GPS, runs beside the first one's, or by itself.
+  for (const std::int64_t ahead : {std::int64_t{kPacketNs / 3}, 20 * kMillisecond, 100 * kSecond}) {
+    TurningSensor sensor;
+    for (int i = 0; i < 1000; ++i) {
+      PacketBuilder second = sensor.packet();
+      const std::int64_t later = sensor.elapsed_ns() + kPacketNs / 3;
+      second.timestamp(static_cast<std::uint32_t>(
+          (sensor.stamp_at_start_ns + sensor.elapsed_ns() + ahead) / 1000));
+      second.turn(static_cast<int>(later / kMillisecond * 18 + 9000) % kFullTurn, 20);
+      sensor.send();
+      sensor.stream().take(second.bytes(), kEpoch + later + kPacketNs);
+    }
+    sensor.stream().flush();
+    EXPECT_GT(sensor.refused(Refusal::second_sensor) + sensor.refused(Refusal::late), 950U)
+        << ahead;
+    EXPECT_LE(sensor.counters().accepted, 1050U) << ahead;
+    EXPECT_LE(sensor.counters().device_restarts, 1U);
+  }
+}
+
 TEST(LidarStreamFaults, PacketsThatOvertookOthersArePutInOrder) {
   std::mt19937 random(4);
   TurningSensor sensor;

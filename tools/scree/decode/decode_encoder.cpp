@@ -1,12 +1,15 @@
 #include "decode/csv_file.hpp"
 #include "decode/decode.hpp"
 #include "read/encoder_capture.hpp"
+#include "read/lidar_capture.hpp"
 
 namespace scree::cli {
 
 void decode_encoder(const DecodeOptions& options) {
   const EncoderSettings settings = encoder_settings(options.capture, options.config);
-  EncoderCapture capture(options.capture, settings);
+  const LidarSettings lidar = capture_settings(options.capture, options.config).lidar;
+  const HostSteps steps = find_host_steps(options.capture, lidar);
+  EncoderCapture capture(options.capture, settings, steps);
   CsvFile csv(options.out);
   csv.line("t_ns,raw,value");
   const auto on_reading = [&](const encoder::Reading& reading) {
@@ -23,6 +26,7 @@ void decode_encoder(const DecodeOptions& options) {
   capture.play(stream);
   csv.close();
   capture.report(stream);
+  say(steps);
 }
 
 }  // namespace scree::cli

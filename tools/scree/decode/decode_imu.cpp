@@ -53,7 +53,8 @@ void write_measurement(CsvFile& csv, std::int64_t t_ns, const xsens::Measurement
 
 void decode_imu(const DecodeOptions& options) {
   const Settings settings = capture_settings(options.capture, options.config);
-  ImuCapture capture(options.capture);
+  const HostSteps steps = find_host_steps(options.capture, settings.lidar);
+  ImuCapture capture(options.capture, steps);
   CsvFile csv(options.out);
   csv.line(
       "t_ns,packet_counter,sample_time_fine,qw,qx,qy,qz,roll_deg,pitch_deg,yaw_deg,"
@@ -65,6 +66,7 @@ void decode_imu(const DecodeOptions& options) {
   capture.play(stream);
   csv.close();
   report_capture(capture, stream);
+  say(steps);
 }
 
 }  // namespace scree::cli

@@ -36,7 +36,8 @@ void write_returns(const velodyne::DecodedPacket& packet, CsvFile& csv) {
 
 void decode_lidar(const DecodeOptions& options) {
   const Settings settings = capture_settings(options.capture, options.config);
-  LidarCapture capture(options.capture, settings);
+  const HostSteps steps = find_host_steps(options.capture, settings.lidar);
+  LidarCapture capture(options.capture, settings, steps);
   if (!options.pcd.empty()) {
     std::error_code error;
     fs::create_directories(options.pcd, error);
@@ -57,6 +58,7 @@ void decode_lidar(const DecodeOptions& options) {
   capture.play(*stream);
   csv.close();
   report_capture(capture, *stream);
+  say(steps);
 }
 
 }  // namespace scree::cli

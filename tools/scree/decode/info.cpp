@@ -128,7 +128,7 @@ Json describe(const LidarCapture& capture, const LidarStream& stream, const Swee
        {{"host_minus_device_s",
          rounded(static_cast<double>(stream.clock().status().offset_ns) * 1e-9, 6)},
         {"device_restarts", counters.device_restarts},
-        {"host_steps", counters.host_steps}}},
+        {"host_set_by_s", Json::array()}}},
       {"position",
        {{"packets", position.packets},
         {"pps", pps},
@@ -175,6 +175,10 @@ void print_table(const Json& info) {
       fmt::format("host minus sensor {} s (within half an hour); sensor restarts {}, host steps {}",
                   clock["host_minus_device_s"].dump(), clock["device_restarts"].dump(),
                   clock["host_steps"].dump()));
+  for (const Json& by : clock["host_set_by_s"]) {
+    row("", fmt::format("the host's clock was set by {:+.3f} s on the way: taken out",
+                        by.get<double>()));
+  }
   const Json& position = info["position"];
   row("GPS", fmt::format("{} position packets; PPS {}; GPRMC {}, with fix {}",
                          position["packets"].dump(), listed(position["pps"], "-"),
@@ -193,10 +197,12 @@ void print_table(const Json& info) {
 
 void inform(const InfoOptions& options) {
   const Settings settings = capture_settings(options.capture, options.config);
-  LidarCapture capture(options.capture, settings);
+  const HostSteps steps = find_host_steps(options.capture, settings.lidar);
+  LidarCapture capture(options.capture, settings, steps);
   SweepRate sweep_rate;
   Position position;
-  const auto check = std::make_unique<SettingsCheck>(options.capture, options.config, settings);
+  const auto check =
+      std::make_unique<SettingsCheck>(options.capture, options.config, settings, steps);
   const auto stream = std::make_unique<LidarStream>(settings.lidar, [&](const Sweep& sweep) {
     sweep_rate.see(sweep);
     check->add(sweep);
@@ -208,7 +214,11 @@ void inform(const InfoOptions& options) {
       },
       [&](std::int64_t arrival_ns) { check->play_until(arrival_ns); });
   Json info = describe(capture, *stream, sweep_rate, position, settings.lidar.model);
-  info.update(describe_rest(options.capture, options.config));
+  info["clock"]["host_steps"] = stream->counters().host_steps + steps.size();
+  for (const HostStep& step : steps) {
+    info["clock"]["host_set_by_s"].push_back(rounded(static_cast<double>(step.by_ns) * 1e-9, 3));
+  }
+  info.update(describe_rest(options.capture, options.config, steps, capture.span()));
   info["settings"] = check->finish();
   if (options.json) {
     fmt::print("{}\n", info.dump(2, ' ', false, Json::error_handler_t::replace));

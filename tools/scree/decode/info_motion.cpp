@@ -9,6 +9,7 @@
 #include "read/encoder_capture.hpp"
 #include "read/imu_capture.hpp"
 #include "read/lidar_capture.hpp"
+#include "read/motion_capture.hpp"
 #include "scoring/truth.hpp"
 #include "scree/capture/capture.hpp"
 
@@ -39,8 +40,9 @@ Json refused_of(const Counts& counts, const Names& reasons) {
   return refused;
 }
 
-Json describe_imu(const fs::path& capture, const Settings& settings) {
-  ImuCapture imu(capture);
+Json describe_imu(const fs::path& capture, const Settings& settings, const HostSteps& steps,
+                  const TimeSpan& lidar) {
+  ImuCapture imu(capture, steps);
   xsens::ImuStream stream(settings.imu, {});
   imu.play(stream);
   const xsens::ImuCounters& counters = stream.counters();
@@ -53,12 +55,14 @@ Json describe_imu(const fs::path& capture, const Settings& settings) {
           {"refused", refused_of(counters.refused, xsens::kRefusalReasons)},
           {"bytes_skipped", counters.bytes_skipped},
           {"device_restarts", counters.device_restarts},
+          {"other_clock", note_of_other_clock("IMU's bytes", imu.span(), lidar)},
           {"broken_off", imu.broken_off()}};
 }
 
-Json describe_encoder(const fs::path& capture, const fs::path& config) {
+Json describe_encoder(const fs::path& capture, const fs::path& config, const HostSteps& steps,
+                      const TimeSpan& lidar) {
   const EncoderSettings settings = encoder_settings(capture, config);
-  EncoderCapture encoder(capture, settings);
+  EncoderCapture encoder(capture, settings, steps);
   double first = 0, last = 0;
   std::uint64_t samples = 0;
   encoder::EncoderStream stream(settings, [&](const EncoderSample& sample) {
@@ -75,6 +79,7 @@ Json describe_encoder(const fs::path& capture, const fs::path& config) {
           {"distance_m", rounded(last - first)},
           {"refused", refused_of(counters.refused, encoder::kRefusalReasons)},
           {"other_frames", counters.other},
+          {"other_clock", note_of_other_clock("encoder's frames", encoder.span(), lidar)},
           {"why_nothing", samples == 0 ? encoder.why_nothing(stream) : ""}};
 }
 
@@ -115,13 +120,16 @@ std::string listed(const Json& counts) {
 
 }  // namespace
 
-Json describe_rest(const fs::path& capture, const fs::path& config) {
+Json describe_rest(const fs::path& capture, const fs::path& config, const HostSteps& steps,
+                   const TimeSpan& lidar) {
   Json rest = {{"imu", nullptr}, {"encoder", nullptr}, {"truth", nullptr}};
   if (!fs::is_directory(capture)) return rest;
   const Settings settings = capture_settings(capture, config);
-  if (imu_file(capture)) rest["imu"] = or_fault([&] { return describe_imu(capture, settings); });
+  if (imu_file(capture)) {
+    rest["imu"] = or_fault([&] { return describe_imu(capture, settings, steps, lidar); });
+  }
   if (can_file(capture)) {
-    rest["encoder"] = or_fault([&] { return describe_encoder(capture, config); });
+    rest["encoder"] = or_fault([&] { return describe_encoder(capture, config, steps, lidar); });
   }
   if (const fs::path file = capture / "truth.json"; fs::exists(file)) {
     rest["truth"] = or_fault([&] { return describe_truth(file); });
@@ -135,6 +143,8 @@ void print_rest(const Json& info) {
     if (part.is_null()) return;
     const bool has_fault = part.contains("fault");
     fmt::print("{:<14}{}\n", name, has_fault ? part["fault"].get<std::string>() : text(part));
+    const std::string other_clock = part.value("other_clock", "");
+    if (!other_clock.empty()) fmt::print("{:<14}{}\n", "note", other_clock);
   };
   row("imu", "IMU", [](const Json& imu) {
     return fmt::format("{} messages, {} a second, {} with orientation; lost {}; refused {}",

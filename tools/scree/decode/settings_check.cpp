@@ -5,13 +5,14 @@
 namespace scree::cli {
 
 SettingsCheck::SettingsCheck(const std::filesystem::path& capture,
-                             const std::filesystem::path& config, const Settings& settings)
+                             const std::filesystem::path& config, const Settings& settings,
+                             const HostSteps& steps)
     : probe_(settings), waiting_(settings.map.wait, *sensors_, [this](const Sweep& sweep) {
         probe_.add(sweep, *sensors_);
         log_.add(probe_.report());
       }) {
   try {
-    motion_.emplace(capture, config, settings, *sensors_);
+    motion_.emplace(capture, config, settings, *sensors_, steps);
   } catch (const Failure&) {
   }
 }

@@ -18,7 +18,7 @@ public:
   /// Where IMU or encoder cannot be read the lidar is looked at alone: it is not for this to say
   /// so.
   SettingsCheck(const std::filesystem::path& capture, const std::filesystem::path& config,
-                const Settings& settings);
+                const Settings& settings, const HostSteps& steps);
 
   /// Before each packet.
   void play_until(std::int64_t arrival_ns);

@@ -10,6 +10,7 @@
 #include "detection/pipeline_capture.hpp"
 #include "detection/stages.hpp"
 #include "read/lidar_capture.hpp"
+#include "scree/app/memory_cap.hpp"
 #include "scree/capture/capture.hpp"
 #include "scree/capture/pcd.hpp"
 #include "scree/detect/viewpoint.hpp"
@@ -94,8 +95,9 @@ void detect_in_cloud(const DetectOptions& options) {
   constexpr int kPointsAnObstacle = 64;  // on average: fewer than any field of stones has
   memory.cloud_points = std::max(memory.cloud_points, static_cast<int>(cloud->size()));
   memory.obstacles = std::max(memory.obstacles, memory.cloud_points / kPointsAnObstacle);
-  auto detector = make_detector(settings.detect_cloud, memory.for_cloud(),
-                                settings_file(options.input, options.config).value_or(fs::path()));
+  const fs::path file = settings_file(options.input, options.config).value_or(fs::path());
+  auto detector =
+      within_memory([&] { return make_detector(settings.detect_cloud, memory.for_cloud(), file); });
   if (!detector) throw Failure(detector.error().message);
 
   ObstacleList list(static_cast<std::size_t>(memory.obstacles));

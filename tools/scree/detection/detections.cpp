@@ -1,6 +1,7 @@
 #include "detection/detections.hpp"
 
 #include <algorithm>
+#include <array>
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -76,19 +77,45 @@ std::vector<ObstacleList> lists_of_log(const std::filesystem::path& file) {
   return lists;
 }
 
+/// A file or a pipe.
+std::ifstream lists_stream(const std::filesystem::path& file) {
+  std::error_code none;
+  const auto status = std::filesystem::status(file, none);
+  if (!std::filesystem::is_regular_file(status) && !std::filesystem::is_fifo(status)) {
+    throw Failure("cannot read " + file.string() + ": it is neither a file nor a pipe");
+  }
+  std::ifstream stream(file);
+  if (!stream) throw Failure("cannot read " + file.string());
+  return stream;
+}
+
+/// As std::getline(), but for a limit: who writes a pipe may never end a line.
+bool read_line(std::ifstream& stream, std::string& line) {
+  constexpr std::size_t kLongest = std::size_t{256} << 20;
+  line.clear();
+  std::array<char, 1 << 16> part{};
+  while (stream.getline(part.data(), part.size()), stream.gcount() > 0) {
+    const bool has_end = stream.good();  // the line's end is counted
+    line.append(part.data(), static_cast<std::size_t>(stream.gcount()) - (has_end ? 1 : 0));
+    if (has_end || stream.eof()) return true;
+    if (line.size() > kLongest) throw Failure("a line of the lists is longer than 256 MB");
+    stream.clear();
+  }
+  return false;
+}
+
 }  // namespace
 
 std::vector<ObstacleList> read_detections(const std::filesystem::path& file) {
   if (is_lcm_log(file)) return lists_of_log(file);
-  std::ifstream stream(file);
-  if (!stream || std::filesystem::is_directory(file)) throw Failure("cannot read " + file.string());
+  std::ifstream stream = lists_stream(file);
   std::vector<ObstacleList> lists;
   std::error_code unknown;
   const std::uintmax_t size = std::filesystem::file_size(file, unknown);  // of no pipe
   Progress progress("reading " + file.string(), unknown ? 0 : size);
   std::size_t position = 0;
   std::string line;
-  for (int number = 1; std::getline(stream, line); ++number) {
+  for (int number = 1; read_line(stream, line); ++number) {
     progress(position += line.size() + 1);
     try {
       const auto json = parse_json(line);

@@ -8,6 +8,7 @@
 #include "commands.hpp"
 #include "detection/setup_log.hpp"
 #include "detection/waiting_sweeps.hpp"
+#include "scree/app/memory_cap.hpp"
 #include "scree/capture/capture.hpp"
 
 namespace scree::cli {
@@ -15,8 +16,8 @@ namespace {
 
 Pipeline make_pipeline(const Settings& settings, const std::filesystem::path& capture,
                        const std::filesystem::path& config) {
-  auto pipeline =
-      Pipeline::make(settings, settings_file(capture, config).value_or(std::filesystem::path()));
+  const auto file = settings_file(capture, config).value_or(std::filesystem::path());
+  auto pipeline = within_memory([&] { return Pipeline::make(settings, file); });
   if (!pipeline) throw Failure(pipeline.error().message);
   return *std::move(pipeline);
 }
@@ -78,10 +79,7 @@ void PipelineCapture::play(const std::function<void(const Sweep&)>& process) {
   motion_.finish();
   report_capture(lidar_, *stream_);
   motion_.report(lidar_.span());
-  for (const HostStep& step : steps_) {
-    fmt::print(stderr, "scree: the host's clock was set by {:+.3f} s on the way: taken out\n",
-               static_cast<double>(step.by_ns) * 1e-9);
-  }
+  say(steps_);
   for (const std::string& mistake : setup.sentences()) fmt::print(stderr, "scree: {}\n", mistake);
   warn_of_losses(pipeline_, waiting);
 }

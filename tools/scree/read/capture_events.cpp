@@ -35,6 +35,7 @@ CaptureEvents::CaptureEvents(const fs::path& capture, const Settings& settings)
     if (const auto can = can_file(capture)) can_.emplace(value_or_fail(CanLogReader::open(*can)));
   }
   if (!lidar_ && !imu_ && !can_) throw Failure(lidar.error().message);
+  steady_.fill(SteadyTime(find_host_steps(capture, settings.lidar)));
   for (const Sensor sensor : {Sensor::lidar, Sensor::imu, Sensor::encoder}) {
     waiting_[index_of(sensor)] = read(sensor);
   }
@@ -50,6 +51,12 @@ bool CaptureEvents::next(CaptureEvent& event) {
 }
 
 std::optional<CaptureEvent> CaptureEvents::read(Sensor sensor) {
+  auto event = read_as_recorded(sensor);
+  if (event) event->arrival_ns = steady_[index_of(sensor)](event->arrival_ns);
+  return event;
+}
+
+std::optional<CaptureEvent> CaptureEvents::read_as_recorded(Sensor sensor) {
   CaptureEvent event;
   event.sensor = sensor;
   if (sensor == Sensor::lidar && lidar_) {

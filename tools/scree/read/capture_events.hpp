@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "read/host_steps.hpp"
 #include "read/lidar_file.hpp"
 #include "scree/capture/can_log.hpp"
 #include "scree/capture/pcap_reader.hpp"
@@ -27,8 +28,9 @@ struct CaptureEvent {
   CanFrame frame;
 };
 
-/// What a capture holds of all its sensors, in the order of arrival. It may lack sensors; of a CAN
-/// log it has the frames of the encoder's interface.
+/// What a capture holds of all its sensors, in the order of arrival, with the times as they would
+/// be had nobody set the host's clock meanwhile. It may lack sensors; of a CAN log it has the
+/// frames of the encoder's interface.
 class CaptureEvents {
 public:
   /// Throws Failure, also where there is nothing at all.
@@ -44,11 +46,13 @@ public:
 
 private:
   std::optional<CaptureEvent> read(Sensor sensor);
+  std::optional<CaptureEvent> read_as_recorded(Sensor sensor);
 
   std::optional<LidarFile> lidar_;
   std::optional<PcapReader> imu_;
   std::optional<CanLogReader> can_;
   std::string interface_;
+  std::array<SteadyTime, kSensors> steady_;
   std::array<std::optional<CaptureEvent>, kSensors> waiting_;  // of each sensor, its next one
   std::optional<Sensor> handed_out_;
 };

@@ -81,6 +81,12 @@ void EncoderCapture::report(const EncoderStream& stream) const {
   const std::uint64_t read =
       counters.accepted + counted(time) + counted(implausible) + counted(frozen);
   if (read == 0) throw Failure(why_nothing(stream));
+  if (log_.counters().has_differences()) {
+    fmt::print(stderr,
+               "scree: {}: its times are those since the frame before (candump -td): log with "
+               "candump -L\n",
+               name_);
+  }
   if (log_.counters().all_refused() > 0) fmt::print(stderr, "scree: {}\n", refused_lines(log_));
   if (counters.all_refused() > 0) fmt::print(stderr, "scree: {}\n", refused_frames(stream));
 }

@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "scree/config/settings.hpp"
@@ -16,8 +18,11 @@ struct HostStep {
 };
 using HostSteps = std::vector<HostStep>;
 
-/// The steps that the lidar's own clock knows nothing of; a pass over its file. Throws Failure.
+/// The steps that the lidar's own clock knows nothing of; a pass over its file. None where no lidar
+/// is in the capture to tell of them.
 HostSteps find_host_steps(const std::filesystem::path& capture, const LidarSettings& lidar);
+/// A line on stderr for each.
+void say(const HostSteps& steps);
 
 /// The times of one file's records as they would be if nobody had set the clock. One that goes
 /// steadily by itself changes nothing.
@@ -31,7 +36,8 @@ public:
 private:
   HostSteps steps_;
   std::size_t passed_ = 0;
-  std::int64_t last_ns_ = INT64_MIN, set_by_ns_ = 0;
+  std::optional<std::int64_t> last_ns_;
+  std::int64_t set_by_ns_ = 0;
 };
 
 }  // namespace scree::cli

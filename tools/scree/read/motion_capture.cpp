@@ -11,16 +11,8 @@ namespace scree::cli {
 namespace {
 
 void note(const std::string& text) {
+  if (text.empty()) return;
   fmt::print(stderr, "scree: {}\n", text);
-}
-
-/// Samples that never meet a sweep are of no use, and otherwise nobody would know.
-void note_other_clock(const char* what, const TimeSpan& sensor, const TimeSpan& lidar) {
-  if (sensor.empty() || lidar.empty() || sensor.meets(lidar)) return;
-  note(
-      fmt::format("the {} lie outside the lidar's time ({} against {}): not used; log both by the "
-                  "same clock (candump -L)",
-                  what, sensor.text(), lidar.text()));
 }
 
 /// In one thread nothing has to wait in a ring, which a long part without lidar would overflow.
@@ -31,6 +23,14 @@ void put(SyncBuffer& sensors, const Sample& sample) {
 }
 
 }  // namespace
+
+std::string note_of_other_clock(const char* what, const TimeSpan& sensor, const TimeSpan& lidar) {
+  if (sensor.empty() || lidar.empty() || sensor.meets(lidar)) return "";
+  return fmt::format(
+      "the {} lie outside the lidar's time ({} against {}): not used; log both by the same clock "
+      "(candump -L)",
+      what, sensor.text(), lidar.text());
+}
 
 MotionCapture::MotionCapture(const std::filesystem::path& capture,
                              const std::filesystem::path& config, const Settings& settings,
@@ -65,7 +65,7 @@ void MotionCapture::report(const TimeSpan& lidar) const {
     note(imu_->why_nothing(imu_stream_));
   } else {
     report_capture(*imu_, imu_stream_);
-    note_other_clock("IMU's bytes", imu_->span(), lidar);
+    note(note_of_other_clock("IMU's bytes", imu_->span(), lidar));
     if (imu_stream_.counters().oriented == 0) note("the IMU sent no orientation: it is not used");
   }
   if (!encoder_) {
@@ -74,7 +74,7 @@ void MotionCapture::report(const TimeSpan& lidar) const {
     note(encoder_->why_nothing(encoder_stream_));
   } else {
     encoder_->report(encoder_stream_);
-    note_other_clock("encoder's frames", encoder_->span(), lidar);
+    note(note_of_other_clock("encoder's frames", encoder_->span(), lidar));
   }
 }
 

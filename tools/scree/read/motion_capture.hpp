@@ -10,6 +10,11 @@
 
 namespace scree::cli {
 
+/// What to say of a sensor whose samples lie outside the lidar's time: they never meet a sweep, and
+/// otherwise nobody would know. Empty where they do not, or where one of both says nothing.
+/// @param what "encoder's frames"
+std::string note_of_other_clock(const char* what, const TimeSpan& sensor, const TimeSpan& lidar);
+
 /// The IMU's and the encoder's part of a capture, played into the pipeline as time goes on. A
 /// capture may lack either.
 class MotionCapture {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -38,6 +39,7 @@ public:
       : recorders_(recorders), said_(recorders.size()) {}
 
   void update(double seconds) {
+    if (!is_read()) return;
     for (std::size_t i = 0; i < recorders_.size(); ++i) {
       if (recorders_[i]->problem() == said_[i]) continue;
       said_[i] = recorders_[i]->problem();
@@ -48,9 +50,16 @@ public:
     shown_at_ = seconds;
     fmt::print(stderr, "{}{}", kClear, line(seconds));
   }
-  void end(double seconds) const { fmt::print(stderr, "{}{}\n", kClear, line(seconds)); }
+  void end(double seconds) const {
+    if (is_read()) fmt::print(stderr, "{}{}\n", kClear, line(seconds));
+  }
 
 private:
+  /// Whoever reads stderr may stop to (Ctrl-S): the recording must not wait for it.
+  static bool is_read() {
+    pollfd wait_for{STDERR_FILENO, POLLOUT, 0};
+    return poll(&wait_for, 1, 0) == 1 && (wait_for.revents & (POLLOUT | POLLERR)) == POLLOUT;
+  }
   std::string line(double seconds) const {
     std::string text = fmt::format("recorded {:.1f} s", seconds);
     for (const Recorder* recorder : recorders_) text += "; " + recorder->progress();
@@ -83,6 +92,8 @@ double run(const std::vector<Recorder*>& recorders, double longest, Report& repo
 }
 
 void record(const RecordOptions& options) {
+  stop_on_signals();
+  std::signal(SIGPIPE, SIG_IGN);  // whoever reads stderr may go
   const Settings settings = value_or_fail(load_settings(options.config));
   const fs::path config = options.config, folder = options.folder;
   value_or_fail(encoder::with_dbc(settings.encoder, config));
@@ -94,13 +105,12 @@ void record(const RecordOptions& options) {
   ImuRecorder imu(settings.imu, folder / "imu.pcap", clock);
   CanRecorder can(settings.encoder.interface, folder / "can.log", clock);
 
-  stop_on_signals();
   fmt::print(stderr, "scree: recording to {}\n", folder.string());
   const std::vector<Recorder*> recorders = {&lidar, &imu, &can};
   Report report(recorders);
   const double seconds = run(recorders, options.seconds, report);
-  report.end(seconds);
   for (Recorder* recorder : recorders) recorder->close();
+  report.end(seconds);
   if (std::all_of(recorders.begin(), recorders.end(),
                   [](const Recorder* recorder) { return recorder->count() == 0; })) {
     throw Failure("nothing came from any sensor");

@@ -9,6 +9,7 @@
 #include "commands.hpp"
 #include "common/time_range.hpp"
 #include "read/capture_events.hpp"
+#include "read/host_steps.hpp"
 #include "read/imu_capture.hpp"
 #include "read/lidar_capture.hpp"
 #include "record/new_capture.hpp"
@@ -31,6 +32,7 @@ struct SliceOptions {
 struct Slice {
   std::int64_t start_ns;  ///< of the capture
   TimeRange range;
+  HostSteps steps;  ///< are taken out of it
 
   bool holds(std::int64_t t_ns) const { return range.holds(t_ns - start_ns); }
 };
@@ -40,8 +42,9 @@ Slice find_slice(const SliceOptions& options, const Settings& settings) {
   CaptureEvents events(options.capture, settings);
   CaptureEvent event;
   std::optional<Slice> slice;
+  const HostSteps steps = find_host_steps(options.capture, settings.lidar);
   while (events.next(event)) {
-    if (!slice) slice = Slice{event.arrival_ns, options.range};
+    if (!slice) slice = Slice{event.arrival_ns, options.range, steps};
     if (slice->holds(event.arrival_ns)) return *slice;
   }
   throw Failure(options.range.nothing_in(options.capture.string(),
@@ -50,7 +53,9 @@ Slice find_slice(const SliceOptions& options, const Settings& settings) {
 
 void copy_records(PcapReader reader, const Slice& slice, const fs::path& file) {
   auto writer = value_or_fail(PcapWriter::create_like(file, reader));
+  SteadyTime steady(slice.steps);
   for (PcapRecord record; reader.next(record);) {
+    record.arrival_ns = steady(record.arrival_ns);
     if (slice.holds(record.arrival_ns)) writer.write(record);
   }
   if (!reader.broken_off().empty()) fmt::print(stderr, "scree: {}\n", reader.broken_off());
@@ -67,7 +72,9 @@ void copy_lidar(const fs::path& capture, const Settings& settings, const Slice& 
   }
   LidarFile lidar(source, settings.lidar);
   auto writer = value_or_fail(PcapWriter::create_ethernet(file));
+  SteadyTime steady(slice.steps);
   for (Datagram datagram; lidar.next(datagram);) {
+    datagram.arrival_ns = steady(datagram.arrival_ns);
     if (slice.holds(datagram.arrival_ns)) writer.write(datagram);
   }
   if (!lidar.broken_off().empty()) fmt::print(stderr, "scree: {}\n", lidar.broken_off());
@@ -78,7 +85,9 @@ void copy_frames(const fs::path& source, const Slice& slice, const fs::path& fil
   auto reader = value_or_fail(CanLogReader::open(source));
   auto writer = value_or_fail(CanLogWriter::create(file));
   std::string interface;
+  SteadyTime steady(slice.steps);
   for (CanFrame frame; reader.next(frame, &interface);) {
+    frame.t_ns = steady(frame.t_ns);
     if (slice.holds(frame.t_ns)) writer.write(frame, interface);
   }
   require(writer.close());
@@ -104,6 +113,7 @@ void cut(const SliceOptions& options) {
   options.range.check();
   const Settings settings = capture_settings(options.capture, options.config);
   const Slice slice = find_slice(options, settings);
+  say(slice.steps);
   make_capture_folder(options.folder, options.outputs);
   if (fs::equivalent(options.capture, options.folder)) {
     throw Failure("a part cannot take the place of the capture that it is cut from");

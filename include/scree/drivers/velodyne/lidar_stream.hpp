@@ -10,6 +10,7 @@
 #include "scree/core/sweep.hpp"
 #include "scree/drivers/velodyne/data_packet.hpp"
 #include "scree/drivers/velodyne/firmware.hpp"
+#include "scree/drivers/velodyne/one_clock.hpp"
 #include "scree/drivers/velodyne/sweep_builder.hpp"
 
 namespace scree::velodyne {
@@ -92,6 +93,7 @@ private:
   OnSweep on_sweep_;
   OnPacket on_packet_;
   SweepBuilder builder_;
+  OneClock one_clock_;
   DeviceClock clock_{kHourNs};
   FirmwareDetector firmware_detector_;
   std::array<Held, 32> held_{};  ///< packets with product byte 0x21 until it is decided

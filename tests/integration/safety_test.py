@@ -1,0 +1,170 @@
+"""What a robot's safety rests on, while the world stalls: python3 safety_test.py SCREED SCREE [TEST ...]"""
+
+import json
+import os
+import resource
+import signal
+import subprocess
+import sys
+import time
+
+from live_daemon import Lines, LiveDaemonTest
+from live_sensors import Player
+from programs import PATIENCE, main
+
+LiveDaemonTest.screed, LiveDaemonTest.scree = sys.argv[1:3]
+SANITIZED = "release" not in sys.argv[1]  # their shadow memory knows no limit
+
+
+def limited(**limits):
+    """For subprocess: sets these limits, as in soft=hard."""
+
+    def set_limits():
+        for name, value in limits.items():
+            resource.setrlimit(getattr(resource, "RLIMIT_" + name), (value, value))
+
+    return set_limits
+
+
+class SafetyTest(LiveDaemonTest):
+    def start_all(self):
+        capture = self.simulate()
+        self.start_daemon()
+        self.player = Player(capture, self.port, self.position_port, self.mti, loop=True)
+        self.addCleanup(self.player.stop)
+        self.say("health ok")
+
+    def test_a_log_that_nobody_reads_delays_nothing(self):
+        capture = self.simulate()
+        read_end, write_end = os.pipe()
+        self.addCleanup(os.close, read_end)
+        os.set_blocking(write_end, False)
+        while True:  # until the pipe is full
+            try:
+                os.write(write_end, b"x" * 4096)
+            except BlockingIOError:
+                break
+        os.set_blocking(write_end, True)
+        daemon = subprocess.Popen([self.screed, "--config", self.config], stderr=write_end)
+        self.addCleanup(daemon.wait)
+        self.addCleanup(daemon.kill)
+        os.close(write_end)
+        self.health = Lines(self.start(self.scree, "watch", "--url", self.url).stdout)
+        self.say("health BLIND")
+        self.mti.plug_in()
+        player = Player(capture, self.port, self.position_port, self.mti, loop=True)
+        self.addCleanup(player.stop)
+        self.say("health ok")
+        at = len(self.health.lines)
+        player.stop()
+        self.say("health BLIND", at)
+        late = time.monotonic() - player.last_sent
+        print(f"BLIND was said {late:.3f} s after the last packet")
+        self.assertLess(late, 1)
+        daemon.terminate()
+        self.assertEqual(daemon.wait(timeout=PATIENCE), 0)
+
+    def test_after_a_pause_of_the_process_old_lists_are_no_sight(self):
+        self.start_all()
+        for pause in (1, 4):
+            at, lists_at = len(self.health.lines), len(self.lists.lines)
+            self.daemon.send_signal(signal.SIGSTOP)
+            time.sleep(pause)
+            goes_on = time.time_ns()
+            self.daemon.send_signal(signal.SIGCONT)
+            self.say("health BLIND", at)
+            at = len(self.health.lines)
+            self.say("health ok", at)
+            seen = time.time_ns()
+            # What was seen then rests on a list of at most half a second before.
+            newest = max(json.loads(line)["stamp_ns"] for line in self.lists.lines[lists_at:])
+            self.assertGreater(newest, seen - 1_000_000_000)
+            print(f"sees again {(seen - goes_on) / 1e9:.2f} s after a pause of {pause} s")
+
+    def test_asked_to_end_while_it_starts_it_ends_with_0(self):
+        self.simulate()
+        ended = 0
+        for delay in (0.02, 0.05, 0.1, 0.2, 0.4, 0.8):
+            daemon = self.start(self.screed, "--config", self.config)
+            time.sleep(delay)
+            with open(f"/proc/{daemon.pid}/status") as status:
+                blocked = next(line.split()[1] for line in status if line.startswith("SigBlk"))
+            daemon.terminate()
+            code = daemon.wait(timeout=PATIENCE)
+            # Before that the loader is at work, and nothing has begun.
+            if int(blocked, 16) >> (signal.SIGTERM - 1) & 1:
+                self.assertEqual(code, 0, f"after {delay} s: {daemon.stderr.read()}")
+                ended += 1
+        self.assertGreater(ended, 0)
+
+    def test_who_reads_the_log_may_go(self):
+        self.simulate()
+        daemon = self.start(self.screed, "--config", self.config)
+        self.read_until(daemon.stderr, "publishing on")
+        daemon.stderr.close()
+        self.mti.plug_in()  # is said in the log
+        self.assertTrue(self.mti.measures.wait(PATIENCE))
+        time.sleep(1.5)
+        self.assertIsNone(daemon.poll())
+        daemon.terminate()
+        self.assertEqual(daemon.wait(timeout=PATIENCE), 0)
+        daemon.stderr = open(os.devnull)
+
+    def ends_or_runs(self, limits):
+        """One sentence and 1, or it runs and ends when asked to."""
+        options = {"env": {**os.environ, "ASAN_OPTIONS": "detect_leaks=0"}}
+        daemon = self.start(self.screed, "--config", self.config, preexec_fn=limits, **options)
+        log = Lines(daemon.stderr)
+        end = time.monotonic() + PATIENCE
+        while daemon.poll() is None and time.monotonic() < end:
+            if any("publishing on" in line for line in log.lines):
+                time.sleep(0.3)  # until its threads run, or do not
+                daemon.terminate()
+                break
+            time.sleep(0.02)
+        code = daemon.wait(timeout=PATIENCE)
+        log.thread.join()
+        said = "".join(log.lines)
+        if code == 0:
+            self.assertIn("stopping", said)
+            return None
+        self.assertIn(code, (1, 127), said)  # 127: the loader has not got so far
+        self.assertTrue(said.strip())
+        return said.strip().splitlines()[-1]
+
+    def test_with_few_descriptors_it_says_so_or_runs(self):
+        self.simulate()
+        said = {self.ends_or_runs(limited(NOFILE=files)) for files in range(4, 34, 2)}
+        self.assertIn(None, said)
+        self.assertTrue(any("descriptor" in (line or "") or "open files" in (line or "")
+                            for line in said), said)  # fmt: skip
+
+    def test_with_little_memory_it_says_so(self):
+        if SANITIZED:
+            self.skipTest("a sanitizer needs all the addresses")
+        self.simulate()
+        said = [self.ends_or_runs(limited(AS=size << 20)) for size in range(60, 1300, 124)]
+        self.assertIsNone(said[-1])
+        sentences = [line for line in said if line and "memory" in line]
+        self.assertTrue(sentences, said)
+        self.assertTrue(any("[memory]" in line for line in sentences), said)
+
+    def test_settings_that_need_more_than_the_computer_has_are_refused(self):
+        if SANITIZED:
+            self.skipTest("a sanitizer needs all the addresses")
+        self.simulate()
+        with open(self.config, "a") as file:
+            file.write("[memory]\nmap_voxels = 3000000\n")
+        said = self.ends_or_runs(limited(AS=1 << 30))
+        self.assertIsNotNone(said)
+        self.assertIn("GB are left", said)
+
+    def test_with_few_threads_it_says_so(self):
+        if os.geteuid() == 0:
+            self.skipTest("root may have any number of threads")
+        self.simulate()
+        self.ends_or_runs(limited(NPROC=1))
+
+
+if __name__ == "__main__":
+    main(sys.argv[3:])
