@@ -97,6 +97,7 @@ private:
   DaemonStatus collect_status() {
     DaemonStatus status;
     status.lidar = lidar_.status();
+    status.lidar.sweeps_dropped += detector_.sweeps_skipped();
     status.detector_loop_ns = detector_.last_loop_ns();
     status.sweeps_not_covered = detector_.not_covered();
     status.lists_dropped = detector_.lists_dropped();

@@ -31,7 +31,9 @@ void DetectorWorker::run() {
     while (TimedSweep* sweep = is_stopped_ ? nullptr : sweeps_.pop()) {
       wait_for_motion(*sweep);
       process(*sweep);
+      const QueueFill fill = sweeps_.fill();
       sweeps_.release(sweep);
+      if (fill.waiting == fill.capacity) skip_oldest();
       note_loop();
     }
   }
@@ -44,6 +46,14 @@ void DetectorWorker::stop() {
 
 void DetectorWorker::set_max_wait(double seconds) {
   if (wait_) wait_->set_limit(seconds);
+}
+
+/// A processor that is too slow must not make every list late.
+void DetectorWorker::skip_oldest() {
+  TimedSweep* const sweep = sweeps_.pop();
+  if (sweep == nullptr) return;
+  sweeps_.release(sweep);
+  sweeps_skipped_.fetch_add(1, std::memory_order_relaxed);
 }
 
 void DetectorWorker::note_loop() {

@@ -14,7 +14,8 @@
 namespace scree {
 
 /// Takes sweeps from their pool, lets each wait for the motion that covers it, has it processed and
-/// passes the list on. run() is the work of a thread.
+/// passes the list on. When all sweeps of the pool are taken it is too slow: then the oldest that
+/// waits is left out. run() is the work of a thread.
 class DetectorWorker {
 public:
   /// Keeps references to the buffer and to both pools.
@@ -38,7 +39,11 @@ public:
   /// Lists that found the publisher busy with all older ones.
   std::uint64_t lists_dropped() const { return lists_dropped_.load(std::memory_order_relaxed); }
 
+  /// Sweeps that were left out because newer ones waited.
+  std::uint64_t sweeps_skipped() const { return sweeps_skipped_.load(std::memory_order_relaxed); }
+
 private:
+  void skip_oldest();
   void note_loop();
   void wait_for_motion(const TimedSweep& sweep);
   void process(const TimedSweep& sweep);
@@ -51,7 +56,7 @@ private:
   LoopCounter loops_;
   std::atomic<bool> is_stopped_{false};
   std::atomic<std::int64_t> last_loop_ns_{steady_ns()};
-  std::atomic<std::uint64_t> lists_dropped_{0};
+  std::atomic<std::uint64_t> lists_dropped_{0}, sweeps_skipped_{0};
 };
 
 }  // namespace scree

@@ -33,7 +33,7 @@ struct LidarStatus {
 
   std::int64_t without_return_ns = 0;
   std::int64_t last_sweep_ns = 0;    ///< when a whole turn was complete
-  std::uint64_t sweeps_dropped = 0;  ///< the ring to the detector was full
+  std::uint64_t sweeps_dropped = 0;  ///< the detector was busy
   std::uint64_t sweeps_empty = 0;    ///< without a return
 };
 

@@ -32,12 +32,12 @@ RollingMap::RollingMap(const MapSettings& settings, std::size_t max_voxels)
       inverse_(static_cast<float>(1 / settings.voxel)),
       reach_(static_cast<float>(settings.reach)),
       voxels_(max_voxels),
-      cloud_(voxels_.capacity()),
+      cloud_(max_voxels / 2),
       passing_(kPassingBeams),
-      beams_(voxels_.capacity()),
-      origins_(voxels_.capacity()),
+      beams_(cloud_.capacity()),
+      origins_(cloud_.capacity()),
       places_(TileGrid::kSlots + 1),
-      chosen_(voxels_.capacity()) {}
+      chosen_(cloud_.capacity()) {}
 
 void RollingMap::clear() {
   voxels_.clear();
@@ -332,8 +332,11 @@ void RollingMap::extract_cloud() {
     const bool is_far = (voxel.mean - robot_).squaredNorm() > reach * reach;
     if (is_far || is_dust(voxel) || !confirm(voxel)) continue;
     const std::uint32_t tile = tile_of(voxel.key);
-    chosen_.push_back({i, tile});
-    ++places_[tile + 1];
+    if (chosen_.push_back({i, tile})) {
+      ++places_[tile + 1];
+    } else {
+      ++dropped_;
+    }
   }
   std::partial_sum(places_.begin(), places_.end(), places_.begin());
   cloud_.resize(chosen_.size());

@@ -261,7 +261,7 @@ struct DetectorLimits {
 /// What the memory is taken for at the start.
 struct MemorySettings {
   int sweep_points = 1 << 17;
-  int map_voxels = 1 << 18;
+  int map_voxels = 1 << 19;
   int cloud_points = 1 << 20;
   int ground_cells = 1 << 17;
   int obstacles = 512;
@@ -273,7 +273,8 @@ struct MemorySettings {
     cloud.ground_cells *= 4;
     return cloud;
   }
-  DetectorLimits for_map() const { return limits(map_voxels, 4); }
+  /// Half of a full map lies beyond the reach of the search, or is not confirmed.
+  DetectorLimits for_map() const { return limits(map_voxels / 2, 4); }
   DetectorLimits for_sweep() const { return limits(sweep_points, 2); }
 
 private:

@@ -37,6 +37,7 @@ protected:
     report.drops.points = 7;
     if (has_grid_) report.grid = &found_grid_;
     ++processed_;
+    while (is_held_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     return has_looked_ ? &list_ : nullptr;
   }
   /// Pushes a sweep that arrives now. @return its time of arrival
@@ -73,7 +74,7 @@ protected:
   ObstacleListPool lists_{kLists, [] { return TimedObstacleList(1); }};
   ObstacleList list_{1};
   ObstacleGrid found_grid_;
-  std::atomic<bool> has_grid_ = false;
+  std::atomic<bool> has_grid_ = false, is_held_ = false;
   std::atomic<bool> has_looked_ = true;
   std::atomic<int> processed_ = 0;
   std::atomic<std::int64_t> processed_ns_ = 0;
@@ -126,8 +127,29 @@ TEST_F(DetectorWorkerTest, ASweepThatWasNotLookedAtGivesNoList) {
 
 TEST_F(DetectorWorkerTest, ListsThatThePublisherDoesNotTakeAreDroppedAndCounted) {
   start();
-  for (std::size_t i = 0; i < kLists + 2; ++i) push_sweep();
+  for (std::size_t i = 0; i < kLists + 2; ++i) {
+    push_sweep();
+    ASSERT_TRUE(until([&] { return sweeps_.fill().waiting == 0; }));
+  }
   EXPECT_TRUE(until([&] { return worker_->lists_dropped() == 2; }));
+}
+
+TEST_F(DetectorWorkerTest, ASlowDetectorLeavesOutTheOldestSweepThatWaits) {
+  is_held_ = true;
+  start();
+  push_sweep(kEndNs);
+  ASSERT_TRUE(until([&] { return processed_ == 1; }));
+  push_sweep(kEndNs + 1);
+  push_sweep(kEndNs + 2);
+  EXPECT_EQ(sweeps_.acquire(), nullptr);
+  is_held_ = false;
+  for (const std::int64_t end_ns : {kEndNs, kEndNs + 2}) {
+    TimedObstacleList* timed = next_list();
+    ASSERT_NE(timed, nullptr);
+    EXPECT_EQ(timed->list.stamp_ns, end_ns);
+    lists_.release(timed);
+  }
+  EXPECT_EQ(worker_->sweeps_skipped(), 1U);
 }
 
 TEST_F(DetectorWorkerTest, ASweepWaitsForMotionUntilTheLimit) {

@@ -26,7 +26,8 @@ protected:
   explicit PipelineMap(const Settings& settings = small_settings())
       : settings_(settings), pipeline_(settings, Networks()) {}
 
-  const ObstacleList& go(int sweeps, bool speaks = true) {
+  /// @param every one of so many sweeps is processed, the last in any case
+  const ObstacleList& go(int sweeps, bool speaks = true, int every = 1) {
     const ObstacleList* list = nullptr;
     for (int i = 0; i < sweeps; ++i) {
       for (int k = 10 * sweeps_; speaks && k < 10 * (sweeps_ + 1); ++k) {
@@ -38,6 +39,7 @@ protected:
         pipeline_.sensors().put(wheel);
       }
       ++sweeps_;
+      if ((i + 1) % every != 0 && i + 1 < sweeps) continue;
       test::scan(ground_, drive_, settings_.lidar, kSweep * sweeps_, sweep_);
       sweep_.end_ns += shift_ns_;
       list = &pipeline_.process(sweep_);
@@ -52,6 +54,11 @@ protected:
   Sweep sweep_{1 << 13};
   std::int64_t shift_ns_ = 0;
   int sweeps_ = 0;
+};
+
+struct SlowPipelineMap : PipelineMap {
+  using PipelineMap::go;
+  void TestBody() override {}
 };
 
 /// Every edge is an obstacle.
@@ -114,6 +121,18 @@ TEST_F(PipelineMapOfEdges, AnObstacleOfSweepsByThemselvesKeepsItsId) {
 }
 
 // Registration keeps the map as the first attitude laid it; what is published is upright.
+/// A processor that is too slow leaves out sweeps.
+TEST_F(PipelineMap, SweepsThatAreLeftOutCostNoPlace) {
+  const Pose all = go(120).pose;
+  for (const int every : {2, 4}) {
+    SCOPED_TRACE(every);
+    SlowPipelineMap some;
+    const Pose pose = some.go(120, true, every).pose;
+    EXPECT_LT((pose.translation - all.translation).norm(), 0.03);
+    EXPECT_LT(pose.rotation.angularDistance(all.rotation), 0.005);
+  }
+}
+
 TEST_F(PipelineMap, PublishesPosesThatStandUpright) {
   drive_.lean = exponential({0.008, -0.006, 0});
   const auto lean_of = [&](const Pose& pose) {
