@@ -204,7 +204,8 @@ void HealthWatch::log_losses(std::int64_t now_ns, const LidarStatus& lidar,
     std::string_view what;
   };
   const std::array<Loss, kLosses> losses = {{
-      {lidar.sweeps_dropped, "sweeps left out: this computer is too slow; scree bench says by how much"},
+      {lidar.sweeps_dropped,
+       "sweeps left out: this computer is too slow; scree bench says by how much"},
       {detector.not_covered,
        "sweeps went on without the samples of IMU or encoder that cover them: those came later "
        "than map.wait"},

@@ -6,15 +6,9 @@
 #include <cstdlib>
 #include <numeric>
 
-#include "scree/terrain/voxel_walk.hpp"
-
 namespace scree {
 namespace {
 
-/// After this many beams went through a voxel since its last hit, what was there has moved away.
-constexpr std::uint8_t kMaxMisses = 8;
-/// One beam in so many is traced, others each sweep.
-constexpr std::uint16_t kRayStride = 4;
 /// The mean of a voxel follows its points; beyond so many each new one counts as much.
 constexpr std::uint8_t kMaxHits = 40;
 /// Beams that are remembered for having passed everything: those of about a second.
@@ -32,7 +26,7 @@ RollingMap::RollingMap(const MapSettings& settings, std::size_t max_voxels)
       inverse_(static_cast<float>(1 / settings.voxel)),
       reach_(static_cast<float>(settings.reach)),
       voxels_(max_voxels),
-      cloud_(max_voxels / 2),
+      cloud_(voxels_.capacity()),
       passing_(kPassingBeams),
       beams_(cloud_.capacity()),
       origins_(cloud_.capacity()),
@@ -142,94 +136,6 @@ void RollingMap::add_hit(MapVoxel& voxel, const Eigen::Vector3f& point, const De
   voxel.beams.scatter += sweep.scatter[index];
 }
 
-/// Beams without return count where they went up: below lies ground that was too dark or too far.
-void RollingMap::trace_rays(const DeskewedSweep& sweep, const Eigen::Matrix3f& rotation,
-                            const Eigen::Vector3f& translation, float reach) {
-  for (std::size_t i = sweep_ % kRayStride; i < sweep.points.size(); i += kRayStride) {
-    const Eigen::Vector3f hit(sweep.points.x[i], sweep.points.y[i], sweep.points.z[i]);
-    trace_ray(rotation * sweep.origins[i] + translation, rotation * (hit - sweep.origins[i]),
-              reach);
-  }
-  for (std::size_t i = sweep_ % kRayStride; i < sweep.empty.size(); i += kRayStride) {
-    const EmptyBeam& empty = sweep.empty[i];
-    const Eigen::Vector3f beam = rotation * (empty.end - empty.origin);
-    if (beam.z() > 0) trace_ray(rotation * empty.origin + translation, beam, reach);
-  }
-}
-
-/// Traces a beam to shortly before what it hit. What has moved away must stand clear of the hit,
-/// for poses err; grass is counted nearer to it. Through grass as many beams pass below a blade as
-/// above it, over a rock only above: those below count for both.
-void RollingMap::trace_ray(const Eigen::Vector3f& from, const Eigen::Vector3f& beam, float reach) {
-  constexpr float kClear = 0.3F, kClearShare = 0.08F;  // before the hit: metres, and of the range
-  constexpr float kGrassClear = 0.12F;                 // the same where grass is counted, metres
-  constexpr float kMissRadius = 0.6F;                  // of a voxel: a beam this near misses it
-  constexpr float kGrassRadius = 0.4F;                 // the same where grass is counted
-  const auto voxel_size = static_cast<float>(settings_.voxel);
-  const auto search_reach = static_cast<float>(settings_.search_reach);
-  const Eigen::Vector3f origin = origin_.cast<float>();
-  const float miss_radius = kMissRadius * voxel_size, grass_radius = kGrassRadius * voxel_size;
-  const float range = beam.norm();
-  const float end = std::min(range - std::max(kClear, kClearShare * range), reach);
-  const Eigen::Vector3f along = beam / range;
-  for (float way = 0; way < std::min(end, search_reach); way += FreeSpace::kCell) {
-    free_space_.add_misses(from + way * along + origin, sweep_, kRayStride);
-  }
-  const float grass_end = std::min(range - kGrassClear, reach);
-  const auto steps = static_cast<int>(std::ceil(grass_end * inverse_));
-  const VoxelWalk walk(from * inverse_, along);
-  const MapVoxel* last = nullptr;
-  for (int step = 0; step < steps; ++step) {
-    const Eigen::Vector3f at = walk.at(step);
-    const VoxelKey key = VoxelKey::at(at);
-    if (const int edge = voxels_.empty_edge(key); edge > 0) {
-      if (edge > 1) step += walk.steps_within(edge, key, at);
-      continue;
-    }
-    MapVoxel* const voxel = voxels_.find(key);
-    if (voxel == last) continue;
-    last = voxel;
-    const Eigen::Vector3f to_mean = voxel->mean - from;
-    const Eigen::Vector3f aside = to_mean - to_mean.dot(along) * along;  // from the beam
-    const float distance = aside.norm();
-    if (distance < grass_radius && aside.z() > 0) voxel->beams.passed += 2 * kRayStride;
-    const bool is_clear = static_cast<float>(step) * voxel_size < end;
-    if (distance < miss_radius && is_clear && voxel->last_sweep != sweep_) {
-      voxel->misses = std::min<std::uint8_t>(voxel->misses + 1, kMaxMisses);
-    }
-  }
-}
-
-/// Remembers beams that would have met level ground within reach, and met something farther off or
-/// nothing at all.
-void RollingMap::add_passing_beams(const DeskewedSweep& sweep, const Eigen::Matrix3f& rotation,
-                                   const Eigen::Vector3f& translation) {
-  constexpr float kFarBelow = 1.5F;  // the robot, metres: gentle slopes do not get there
-  const auto reach = static_cast<float>(settings_.search_reach);
-  for (std::size_t i = sweep_ % kRayStride; i < sweep.points.size(); i += kRayStride) {
-    const Eigen::Vector3f hit(sweep.points.x[i], sweep.points.y[i], sweep.points.z[i]);
-    if (hit.squaredNorm() < reach * reach || hit.z() > -kFarBelow) continue;
-    add_passing_beam(rotation * sweep.origins[i] + translation,
-                     rotation * (hit - sweep.origins[i]));
-  }
-  for (std::size_t i = sweep_ % kRayStride; i < sweep.empty.size(); i += kRayStride) {
-    const EmptyBeam& empty = sweep.empty[i];
-    add_passing_beam(rotation * empty.origin + translation, rotation * (empty.end - empty.origin));
-  }
-}
-
-void RollingMap::add_passing_beam(const Eigen::Vector3f& origin, const Eigen::Vector3f& beam) {
-  constexpr float kLeastSlope = 0.08F;  // downwards: level ground comes within 12 m of most robots
-  const PassingBeam passing{origin, beam.normalized(), beam.norm()};
-  if (passing.direction.z() > -kLeastSlope) return;
-  if (passing_.size() < passing_.capacity()) {
-    passing_.push_back(passing);
-  } else {
-    passing_[next_passing_] = passing;
-    next_passing_ = (next_passing_ + 1) % passing_.capacity();
-  }
-}
-
 Occupancy RollingMap::occupancy_at(const Eigen::Vector3d& point) const {
   constexpr std::uint32_t kRecent = 20;  // sweeps
   const VoxelKey key = key_of((point - origin_).cast<float>());
@@ -313,7 +219,7 @@ void RollingMap::prune() {
   for (std::size_t i = voxels_.size(); i-- > 0;) {
     MapVoxel& voxel = voxels_[i];
     const bool is_far = (voxel.mean - robot_).squaredNorm() > reach * reach;
-    const bool has_moved = voxel.misses >= kMaxMisses;
+    const bool has_moved = voxel.misses >= kMostMisses;
     // From the future, too, when the clock was set back.
     const bool is_old = std::abs(static_cast<std::int32_t>(now_ds - voxel.seen_ds)) > kept_ds;
     const bool is_noise = sweep_ - voxel.last_sweep == kConfirmWithin && !confirm(voxel);
@@ -332,11 +238,8 @@ void RollingMap::extract_cloud() {
     const bool is_far = (voxel.mean - robot_).squaredNorm() > reach * reach;
     if (is_far || is_dust(voxel) || !confirm(voxel)) continue;
     const std::uint32_t tile = tile_of(voxel.key);
-    if (chosen_.push_back({i, tile})) {
-      ++places_[tile + 1];
-    } else {
-      ++dropped_;
-    }
+    chosen_.push_back({i, tile});
+    ++places_[tile + 1];
   }
   std::partial_sum(places_.begin(), places_.end(), places_.begin());
   cloud_.resize(chosen_.size());

@@ -154,7 +154,7 @@ class SafetyTest(LiveDaemonTest):
             self.skipTest("a sanitizer needs all the addresses")
         self.simulate()
         with open(self.config, "a") as file:
-            file.write("[memory]\nmap_voxels = 3000000\n")
+            file.write("[memory]\nmap_voxels = 12000000\n")
         said = self.ends_or_runs(limited(AS=1 << 30))
         self.assertIsNotNone(said)
         self.assertIn("GB are left", said)

@@ -273,8 +273,7 @@ struct MemorySettings {
     cloud.ground_cells *= 4;
     return cloud;
   }
-  /// Half of a full map lies beyond the reach of the search, or is not confirmed.
-  DetectorLimits for_map() const { return limits(map_voxels / 2, 4); }
+  DetectorLimits for_map() const { return limits(map_voxels, 4); }
   DetectorLimits for_sweep() const { return limits(sweep_points, 2); }
 
 private:

@@ -65,6 +65,8 @@ public:
 private:
   /// Tiles of the plane, eight voxels wide; those far apart share a slot.
   using TileGrid = ToroidalGrid<64, 1>;
+  /// After this many beams went through a voxel since its last hit, what was there has moved away.
+  static constexpr std::uint8_t kMostMisses = 8;
   /// A voxel for the cloud.
   struct Chosen {
     std::uint32_t voxel, tile;

@@ -127,7 +127,8 @@ TEST_F(PipelineMap, SweepsThatAreLeftOutCostNoPlace) {
   for (const int every : {2, 4}) {
     SCOPED_TRACE(every);
     SlowPipelineMap some;
-    const Pose pose = some.go(120, true, every).pose;
+    some.go(1);  // odom begins with it
+    const Pose pose = some.go(119, true, every).pose;
     EXPECT_LT((pose.translation - all.translation).norm(), 0.03);
     EXPECT_LT(pose.rotation.angularDistance(all.rotation), 0.005);
   }
