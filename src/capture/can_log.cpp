@@ -162,7 +162,7 @@ std::uint64_t CanLogCounters::all_refused() const {
 }
 
 bool CanLogCounters::has_differences() const {
-  constexpr std::int64_t kNoEpoch = 365 * 86'400 * kSecond;
+  constexpr std::int64_t kNoEpoch = 31'536'000 * kSecond;  // a year
   constexpr std::uint64_t kTells = 8;
   return frames > kTells && not_later > frames / 4 && latest_ns < kNoEpoch;
 }

@@ -109,10 +109,9 @@ void gather_capture(const std::filesystem::path& capture, const std::filesystem:
   SetupTimes setup(data);
   std::int64_t ground_ns = 0;
   run.play([&](const Sweep& sweep) {
-    using Clock = std::chrono::steady_clock;
-    const auto begin = Clock::now();
+    const auto begin = std::chrono::steady_clock::now();
     const ObstacleList& list = pipeline.process(sweep);
-    const std::chrono::duration<double, std::milli> took = Clock::now() - begin;
+    const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
     data.add(list);
     data.add_sweep(pipeline.uses_map() ? pipeline.mapper().sweep().points : pipeline.ground());
     if (pipeline.grid() != nullptr) data.add(*pipeline.grid());
