@@ -25,7 +25,7 @@ constexpr std::size_t kPackets = 512;            // two thirds of a second
 constexpr std::size_t kLongestPacket = 2048;
 constexpr std::chrono::milliseconds kPause{50};
 
-constexpr const char* kPacketChannel = "VELODYNE";
+constexpr std::string_view kPacketChannel = "VELODYNE";
 
 }  // namespace
 
@@ -59,7 +59,7 @@ Keeper::~Keeper() {
   thread_.join();
 }
 
-bool Keeper::fill(Pool& pool, const char* channel, std::span<const std::uint8_t> bytes) {
+bool Keeper::fill(Pool& pool, std::string_view channel, std::span<const std::uint8_t> bytes) {
   KeptMessage* const message = pool.acquire();
   if (message == nullptr) return false;
   message->channel = channel;
@@ -69,7 +69,7 @@ bool Keeper::fill(Pool& pool, const char* channel, std::span<const std::uint8_t>
   return true;
 }
 
-void Keeper::put(const char* channel, std::span<const std::uint8_t> message) {
+void Keeper::put(std::string_view channel, std::span<const std::uint8_t> message) {
   if (!fill(messages_, channel, message)) ++dropped_;
 }
 
@@ -105,7 +105,7 @@ void Keeper::drain(Pool& pool) {
 
 void Keeper::take(const KeptMessage& message) {
   if (box_) box_->take(message.channel, message.time_ns, message.bytes);
-  if (std::string_view(message.channel) == kHealthChannel) take_health(message);
+  if (message.channel == kHealthChannel) take_health(message);
 }
 
 void Keeper::take_health(const KeptMessage& message) {

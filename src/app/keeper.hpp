@@ -20,7 +20,7 @@ namespace scree {
 /// A message on its way into files.
 struct KeptMessage {
   explicit KeptMessage(std::size_t longest) { bytes.reserve(longest); }
-  const char* channel = "";  ///< a literal
+  std::string_view channel;  ///< of a literal
   std::int64_t time_ns = 0;  ///< since the UNIX epoch
   std::vector<std::uint8_t> bytes;
 };
@@ -36,7 +36,7 @@ public:
   Keeper& operator=(const Keeper&) = delete;
 
   /// The publisher's thread: keeps what was published.
-  void put(const char* channel, std::span<const std::uint8_t> message);
+  void put(std::string_view channel, std::span<const std::uint8_t> message);
   /// The lidar's thread: the same of a raw packet. Allocates nothing.
   void put_packet(std::span<const std::uint8_t> datagram);
 
@@ -44,7 +44,7 @@ private:
   using Pool = SpscPool<KeptMessage>;
 
   Keeper(std::optional<BlackBox> box, std::string metrics_file, bool keeps_packets);
-  static bool fill(Pool& pool, const char* channel, std::span<const std::uint8_t> bytes);
+  static bool fill(Pool& pool, std::string_view channel, std::span<const std::uint8_t> bytes);
   void run();
   void drain(Pool& pool);
   void take(const KeptMessage& message);

@@ -9,27 +9,20 @@ namespace {
 /// transform serves until the time changes.
 class LidarTrajectory {
 public:
-  LidarTrajectory(const Pose& mount, const SweepTrajectory& trajectory)
-      : rotation_(mount.rotation.toRotationMatrix().cast<float>()),
-        translation_(mount.translation.cast<float>()),
-        trajectory_(trajectory) {}
+  explicit LidarTrajectory(const SweepTrajectory& trajectory) : trajectory_(trajectory) {}
 
   /// @param time_ns relative to the sweep's end
   const SweepTrajectory::Transform& at(std::int32_t time_ns) {
-    if (time_ns == time_ns_) return lidar_;
+    if (time_ns == time_ns_) return to_base_;
     time_ns_ = time_ns;
-    const SweepTrajectory::Transform base = trajectory_.at(-std::int64_t{time_ns});
-    lidar_.rotation = base.rotation * rotation_;
-    lidar_.translation = base.rotation * translation_ + base.translation;
-    return lidar_;
+    to_base_ = trajectory_.at(-std::int64_t{time_ns});
+    return to_base_;
   }
 
 private:
-  Eigen::Matrix3f rotation_;
-  Eigen::Vector3f translation_;
-  const SweepTrajectory& trajectory_;
+  SweepTrajectory trajectory_;
   std::int32_t time_ns_ = 1;
-  SweepTrajectory::Transform lidar_;
+  SweepTrajectory::Transform to_base_;
 };
 
 }  // namespace
@@ -39,7 +32,7 @@ void deskew(const Sweep& sweep, const LidarSettings& lidar, const SweepTrajector
   const auto nearest = static_cast<float>(lidar.min_range * lidar.min_range);
   const auto farthest = static_cast<float>(lidar.max_range * lidar.max_range);
   out.clear();
-  LidarTrajectory lidar_trajectory(lidar.mount(), trajectory);
+  LidarTrajectory lidar_trajectory(trajectory.of_sensor(lidar.mount()));
   RangeScatter scatter;
   for (std::size_t i = 0; i < sweep.points.size(); ++i) {
     const Eigen::Vector3f in_lidar(sweep.points.x[i], sweep.points.y[i], sweep.points.z[i]);

@@ -4,6 +4,16 @@
 
 namespace scree {
 
+SweepTrajectory SweepTrajectory::of_sensor(const Pose& mount) const {
+  const Eigen::Matrix3f rotation = mount.rotation.toRotationMatrix().cast<float>();
+  const Eigen::Vector3f translation = mount.translation.cast<float>();
+  SweepTrajectory sensor = *this;
+  for (Transform& each : sensor.transforms_) {
+    each = {each.rotation * rotation, each.rotation * translation + each.translation};
+  }
+  return sensor;
+}
+
 SweepTrajectory::Transform SweepTrajectory::at(std::int64_t before_end_ns) const {
   const float step = static_cast<float>(before_end_ns) / static_cast<float>(step_ns_);
   const auto index = static_cast<std::size_t>(std::max(step, 0.0F));

@@ -9,7 +9,7 @@ namespace scree {
 namespace {
 
 template <class Message>
-void encode_on(const char* channel, const Message& message, EncodedMessage& encoded) {
+void encode_on(std::string_view channel, const Message& message, EncodedMessage& encoded) {
   encoded.channel = channel;
   encoded.bytes.resize(static_cast<std::size_t>(message.getEncodedSize()));
   message.encode(encoded.bytes.data(), 0, static_cast<int>(encoded.bytes.size()));
@@ -47,7 +47,7 @@ Result<Publisher> Publisher::open(const std::string& lcm_url) {
 }
 
 bool Publisher::send(const EncodedMessage& message) {
-  return lcm_publish(lcm_.get(), message.channel, message.bytes.data(),
+  return lcm_publish(lcm_.get(), message.channel.data(), message.bytes.data(),
                      static_cast<unsigned int>(message.bytes.size())) == 0;
 }
 

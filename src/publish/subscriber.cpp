@@ -56,8 +56,8 @@ bool Subscriber::subscribe(const std::string& lcm_url) {
     const auto* data = static_cast<const std::uint8_t*>(buffer->data);
     static_cast<Subscriber*>(subscriber)->decoder_.take(channel, {data, buffer->data_size});
   };
-  for (const char* channel : {kObstaclesChannel, kHealthChannel, kGridChannel}) {
-    if (lcm_subscribe(lcm_.get(), channel, on_message, this) == nullptr) return false;
+  for (const std::string_view channel : {kObstaclesChannel, kHealthChannel, kGridChannel}) {
+    if (lcm_subscribe(lcm_.get(), channel.data(), on_message, this) == nullptr) return false;
   }
   return true;
 }

@@ -51,6 +51,7 @@ class DaemonTest(ProgramTest):
                 "--position-port", str(self.position_port), *arguments]  # fmt: skip
 
     def test_a_replayed_capture_gives_lists_and_health(self):
+        self.keep_up()
         daemon = self.start_daemon()
         lists = self.start(*self.watch("--json", "--count", "5"))
         health = self.start(*self.watch())

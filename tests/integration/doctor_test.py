@@ -117,8 +117,9 @@ class DoctorTest(ProgramTest):
         self.assert_line(lines, "lidar", "?", "another program")
 
     def test_a_running_daemon_tells_by_its_health(self):
+        self.keep_up()
         with open(self.config) as file:
-            config = self.write("running.toml", file.read().replace('stop = "nochip:4"', ""))
+            config = self.write("robot.toml", file.read().replace('stop = "nochip:4"', ""))
         daemon = self.start(SCREED, "--config", config)
         self.read_until(daemon.stderr, "publishing on")
         lines = self.doctor(config)

@@ -1,14 +1,16 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <boost/container/static_vector.hpp>
 #include <cstddef>
 #include <cstdint>
 
-#include "scree/core/fixed_vector.hpp"
+#include "scree/core/pose.hpp"
 
 namespace scree {
 
-/// Where `base` was during a sweep, in `base` at the sweep's end, in equal steps of time.
+/// Where `base` (or a sensor on it) was during a sweep, in `base` at the sweep's end, in equal steps
+/// of time.
 class SweepTrajectory {
 public:
   static constexpr std::int64_t kLongestStepNs = 5'000'000;
@@ -20,18 +22,24 @@ public:
   };
 
   /// Standing still.
-  SweepTrajectory() : transforms_(kMaxSteps + 1) { transforms_.push_back({}); }
+  SweepTrajectory() : transforms_(1) {}
   void start(std::int64_t step_ns) {
     transforms_.clear();
     step_ns_ = step_ns;
   }
   /// Takes one instant after the other, from the end backwards. False when full.
-  bool push_back(const Transform& transform) { return transforms_.push_back(transform); }
+  bool push_back(const Transform& transform) {
+    if (transforms_.size() == transforms_.capacity()) return false;
+    transforms_.push_back(transform);
+    return true;
+  }
+  /// The trajectory of a sensor that is mounted so, sensor -> base.
+  SweepTrajectory of_sensor(const Pose& mount) const;
   /// @param before_end_ns not below zero; before the trajectory's begin its first transform answers
   Transform at(std::int64_t before_end_ns) const;
 
 private:
-  FixedVector<Transform> transforms_;
+  boost::container::static_vector<Transform, kMaxSteps + 1> transforms_;
   std::int64_t step_ns_ = kLongestStepNs;
 };
 

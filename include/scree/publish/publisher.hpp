@@ -9,6 +9,7 @@
 #include <scree/health_t.hpp>
 #include <scree/obstacle_list_t.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scree/core/obstacle.hpp"
@@ -17,13 +18,14 @@
 
 namespace scree {
 
-inline constexpr const char* kObstaclesChannel = "SCREE_OBSTACLES";
-inline constexpr const char* kGridChannel = "SCREE_GRID";
-inline constexpr const char* kHealthChannel = "SCREE_HEALTH";
+// Literals: a null character follows each.
+inline constexpr std::string_view kObstaclesChannel = "SCREE_OBSTACLES";
+inline constexpr std::string_view kGridChannel = "SCREE_GRID";
+inline constexpr std::string_view kHealthChannel = "SCREE_HEALTH";
 
 /// A message as LCM sends it.
 struct EncodedMessage {
-  const char* channel = "";
+  std::string_view channel;  ///< one of those above
   std::vector<std::uint8_t> bytes;
 };
 
