@@ -215,9 +215,9 @@ TEST(DeadReckoning, GoesBackWhenASweepIsRepeated) {
 
 TEST(DeadReckoning, TakesInstantsThatAreOneAndAllocatesNothing) {
   const SimpleDrive drive = test::helix(1, 0.3, 0.1);
+  const std::size_t before = test::allocations();
   Follower follower(drive);
   drive.put(follower.sensors(), 0, 2);
-  const std::size_t before = test::allocations();
   SweepTrajectory trajectory;
   const std::size_t made = test::allocations();
   for (const std::int64_t t : {nanoseconds(0.5), nanoseconds(0.5), nanoseconds(0.5) + 1}) {
