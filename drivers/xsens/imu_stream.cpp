@@ -188,6 +188,8 @@ void ImuStream::hand_out(const Measurement& measurement, std::int64_t t_ns,
   sample.t_ns = t_ns;
   ++counters_.samples;
   counters_.oriented += sample.has_orientation ? 1 : 0;
+  const bool is_useful = counters_.oriented == 0 ? sample.has_rate : sample.has_orientation;
+  counters_.useful += is_useful ? 1 : 0;
   if (on_sample_) on_sample_(sample);
 }
 

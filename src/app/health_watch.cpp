@@ -134,12 +134,13 @@ SensorStatus HealthWatch::status_of(const ImuStatus& imu) const {
   status.source = settings_.imu.device;
   status.last_heard_ns = imu.last_bytes_ns;
   status.last_message_ns = imu.last_message_ns;
-  status.messages = imu.imu.oriented;
+  status.messages = imu.imu.useful;
   status.lost = imu.imu.lost;
   add_refused(xsens::kRefusalNames, xsens::kRefusalReasons, imu.imu.refused, status);
   if (!gives_high_rates(settings_.imu)) {
     status.refused.push_back(
-        {"no_orientation", "no orientation in them", imu.imu.samples - imu.imu.oriented});
+        {"no_orientation", "neither orientation nor rate of turn in them",
+         imu.imu.samples - imu.imu.useful});
   }
   status.refused.push_back(
       {"stray_bytes", "bytes that belong to no message", imu.imu.bytes_skipped});

@@ -54,7 +54,7 @@ void ImuReader::read() {
     const bool is_answer = counters.other_messages != status_.imu.other_messages &&
                            counters.accepted == status_.imu.accepted;
     if (!is_answer) status_.last_bytes_ns = now_ns;
-    if (counters.oriented != status_.imu.oriented) status_.last_message_ns = now_ns;
+    if (counters.useful != status_.imu.useful) status_.last_message_ns = now_ns;
     status_.imu = counters;
   }
   status_.clock = stream_.clock().status(wall_ns() - steady_ns());

@@ -50,7 +50,7 @@ Result<Pipeline> Pipeline::make(const Settings& settings,
 }
 
 Pipeline::Pipeline(const Settings& settings, const Networks& networks)
-    : sensors_(std::make_unique<SyncBuffer>()),
+    : sensors_(std::make_unique<SyncBuffer>(settings.imu.mount().rotation)),
       mapper_(std::make_unique<Mapper>(settings)),
       setup_(std::make_unique<SetupProbe>(settings)),
       map_detector_(settings.detect_map, settings.memory.for_map(), networks.map),

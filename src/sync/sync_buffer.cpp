@@ -71,7 +71,7 @@ bool SyncBuffer::put(const Sample& sample, Ring<Sample>& ring) {
 }
 
 bool SyncBuffer::put(const ImuSample& sample) {
-  return !sample.has_orientation || put(sample, imu_ring_);
+  return put(sample, imu_ring_);
 }
 
 bool SyncBuffer::put(const EncoderSample& sample) {
@@ -82,7 +82,11 @@ bool SyncBuffer::accept(ImuSample sample) {
   if (!is_sound(sample)) return false;
   if (is_set_back(imu_, sample)) {
     imu_.clear();
+    attitude_.restart();
     heading_.restart();
+  }
+  if (!attitude_.complete(sample, [this](std::int64_t t_ns) { return mean_speed(t_ns); })) {
+    return true;
   }
   heading_.correct(sample);
   return imu_.push(sample);
@@ -93,6 +97,14 @@ bool SyncBuffer::accept(const EncoderSample& sample) {
   if (is_set_back(wheel_, sample)) wheel_.clear();
   if (!wheel_.empty() && !can_follow(wheel_.newest(), sample)) return false;
   return wheel_.push(sample);
+}
+
+/// The wheel's speed about an instant: a counter's steps are coarse.
+std::optional<double> SyncBuffer::mean_speed(std::int64_t t_ns) const {
+  constexpr std::int64_t kAbout = 75'000'000;
+  const auto before = wheel_at(t_ns - kAbout), after = wheel_at(t_ns + kAbout);
+  if (!before || !after) return std::nullopt;
+  return (after->distance - before->distance) / seconds(2 * kAbout);
 }
 
 /// Moves a ring's samples into the history. @return how many of them it refused
@@ -107,7 +119,8 @@ std::uint64_t SyncBuffer::drain(Ring<Sample>& ring) {
 }
 
 void SyncBuffer::gather() {
-  late_.fetch_add(drain(imu_ring_) + drain(wheel_ring_), std::memory_order_relaxed);
+  late_.fetch_add(drain(wheel_ring_), std::memory_order_relaxed);
+  late_.fetch_add(drain(imu_ring_), std::memory_order_relaxed);
 }
 
 bool SyncBuffer::covers(std::int64_t t_ns) const {

@@ -130,6 +130,10 @@ void add_drive(CLI::App& command, CaptureSettings& capture, CLI::Option* cloud) 
       ->capture_default_str();
   command.add_flag("--dual", capture.dual, "dual returns")->excludes(cloud);
   command.add_flag("--pps", capture.pps, "the lidar's clock is locked to GPS")->excludes(cloud);
+  command
+      .add_flag("!--no-orientation", capture.imu_orientation,
+                "the IMU sends rates and accelerations alone, as an MTi-1 or MTi-100")
+      ->excludes(cloud);
   command.add_flag("--reverse", capture.reverse, "drives backwards for a stretch")
       ->excludes(cloud)
       ->excludes(at_rest);

@@ -90,6 +90,7 @@ SimulatedImuSettings draw_imu(const CaptureSettings& settings) {
   Random random(settings.seed, 0x1A1);
   SimulatedImuSettings imu;
   imu.rate_hz = settings.imu_rate_hz;
+  imu.has_orientation = settings.imu_orientation;
   imu.gyro_bias = random.uniform(0.0003, 0.003);
   imu.gyro_vibration = random.uniform(0.001, 0.015);
   imu.acceleration_vibration = random.uniform(0.05, 0.7);
@@ -206,7 +207,7 @@ void DriveFeed::feed_imu(std::int64_t t_ns, std::initializer_list<SyncBuffer*> s
       imu_stream_.take(imu_bytes_, next_sample_.t_ns);
     } else {
       decoded_.push_back({.t_ns = next_sample_.t_ns,
-                          .has_orientation = true,
+                          .has_orientation = next_sample_.has_orientation,
                           .has_rate = true,
                           .has_acceleration = true,
                           .orientation = next_sample_.orientation,

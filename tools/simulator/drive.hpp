@@ -23,19 +23,20 @@ namespace scree {
 struct CaptureSettings {
   std::uint64_t seed = 1;
   Scene scene = Scene::mixed;
-  double seconds = 20;       ///< rounded to whole turns, at least one
-  double speed = 0;          ///< mean while driving, m/s; 0: drawn from 0.4 to 1.6
-  bool reverse = false;      ///< drives backwards for a stretch
-  bool turns = false;        ///< stops for a while and turns on the spot
-  bool at_rest = false;      ///< the robot stands level at the origin, the ground is level there
-  double rate_hz = 10;       ///< turns of the lidar a second, 5 to 20
-  bool dual = false;         ///< dual returns instead of the strongest
-  bool pps = false;          ///< the lidar's clock is locked to GPS; else it runs free
-  double imu_rate_hz = 100;  ///< 100 to 400
-  bool imu_bursts = false;   ///< a USB adapter hands the IMU's bytes on every 16 ms only
-  double cell = 0.02;        ///< of the terrain's raster, metres
-  double margin = 28;        ///< of terrain beyond the way, metres
-  MoverCounts movers;        ///< those that find no way are left out
+  double seconds = 20;          ///< rounded to whole turns, at least one
+  double speed = 0;             ///< mean while driving, m/s; 0: drawn from 0.4 to 1.6
+  bool reverse = false;         ///< drives backwards for a stretch
+  bool turns = false;           ///< stops for a while and turns on the spot
+  bool at_rest = false;         ///< the robot stands level at the origin, the ground is level there
+  double rate_hz = 10;          ///< turns of the lidar a second, 5 to 20
+  bool dual = false;            ///< dual returns instead of the strongest
+  bool pps = false;             ///< the lidar's clock is locked to GPS; else it runs free
+  double imu_rate_hz = 100;     ///< 100 to 400
+  bool imu_orientation = true;  ///< false: it sends rates and accelerations alone
+  bool imu_bursts = false;      ///< a USB adapter hands the IMU's bytes on every 16 ms only
+  double cell = 0.02;           ///< of the terrain's raster, metres
+  double margin = 28;           ///< of terrain beyond the way, metres
+  MoverCounts movers;           ///< those that find no way are left out
   Faults faults;
 };
 

@@ -53,6 +53,7 @@ ImuMessage SimulatedImu::next() {
   const auto ticks =
       static_cast<double>(samples_) * 1e9 / settings_.rate_hz / static_cast<double>(xsens::kTickNs);
   sample.sample_time_fine = first_tick_ + static_cast<std::uint32_t>(std::lround(ticks));
+  sample.has_orientation = settings_.has_orientation;
   sample.status = xsens::kSelftestPassed | xsens::kFilterValid;
   ++samples_;
 

@@ -22,8 +22,9 @@ struct SimulatedImuSettings {
   double tilt_error = 0.006;            ///< of roll and pitch, rad
   double tilt_correlation = 25;         ///< seconds
   double yaw_drift = 0.0005;            ///< of the drift's rate, rad/s
-  double yaw_offset = 0;  ///< of the terrain's x axis from east, counter-clockwise, rad
-  double clock_skew = 0;  ///< seconds a second that its clock gains
+  double yaw_offset = 0;        ///< of the terrain's x axis from east, counter-clockwise, rad
+  double clock_skew = 0;        ///< seconds a second that its clock gains
+  bool has_orientation = true;  ///< false: an MTi-1 or MTi-100, which sends none
 };
 
 /// What an Xsens MTi-7xx fixed to a moving robot measures, one sample at a time. Rates and

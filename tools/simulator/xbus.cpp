@@ -54,9 +54,11 @@ std::vector<std::uint8_t> mt_data2(const ImuMessage& sample) {
   data.put(sample.packet_counter);
   data.begin(DataId::sample_time_fine, 4);
   data.put(sample.sample_time_fine);
-  data.begin(DataId::quaternion, 16);
-  data.put(static_cast<float>(sample.orientation.w()));
-  data.put(Eigen::Vector3d(sample.orientation.vec()));
+  if (sample.has_orientation) {
+    data.begin(DataId::quaternion, 16);
+    data.put(static_cast<float>(sample.orientation.w()));
+    data.put(Eigen::Vector3d(sample.orientation.vec()));
+  }
   data.begin(DataId::acceleration, 12);
   data.put(sample.acceleration);
   data.begin(DataId::rate_of_turn, 12);

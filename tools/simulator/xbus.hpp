@@ -18,13 +18,14 @@ struct ImuMessage {
   Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();  ///< specific force, sensor's axes, m/s^2
   Eigen::Vector3d rate_of_turn = Eigen::Vector3d::Zero();  ///< sensor's axes, rad/s
   std::uint32_t status = 0;
+  bool has_orientation = true;  ///< else it is not sent
 };
 
 /// An Xbus message with its checksum. @pre data has at most 254 bytes
 std::vector<std::uint8_t> xbus_message(xsens::MessageId id, std::span<const std::uint8_t> data);
 
-/// The MTData2 message of a sample: packet counter, sample time, quaternion, acceleration, rate of
-/// turn and status word, numbers as float32.
+/// The MTData2 message of a sample: packet counter, sample time, quaternion (where it has an
+/// orientation), acceleration, rate of turn and status word, numbers as float32.
 std::vector<std::uint8_t> mt_data2(const ImuMessage& sample);
 
 }  // namespace scree

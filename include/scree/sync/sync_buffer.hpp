@@ -8,6 +8,7 @@
 #include "scree/core/encoder_sample.hpp"
 #include "scree/core/imu_sample.hpp"
 #include "scree/core/queue_depth.hpp"
+#include "scree/sync/attitude_filter.hpp"
 #include "scree/sync/heading_jump_filter.hpp"
 #include "scree/sync/sample_history.hpp"
 
@@ -39,15 +40,19 @@ public:
   /// before is forgotten.
   static constexpr std::int64_t kSetBackNs = 1'000'000'000;
 
-  // Producers, one thread each. False: no room, dropped and counted. IMU samples without an
-  // orientation, as those of high rate, are of no use here and are passed over.
+  /// @param imu_mount rotation imu -> base
+  explicit SyncBuffer(const Eigen::Quaterniond& imu_mount = Eigen::Quaterniond::Identity())
+      : attitude_(imu_mount) {}
+
+  // Producers, one thread each. False: no room, dropped and counted.
   bool put(const ImuSample& sample);
   bool put(const EncoderSample& sample);
 
   // The consumer.
 
   /// Takes over what the producers have put. Refused: samples not newer than those before, and
-  /// those with values that are no numbers or implausible.
+  /// those with values that are no numbers or implausible. Passed over: those of the IMU that
+  /// AttitudeFilter gives no orientation, as samples of high rate.
   void gather();
   /// Whether waiting longer cannot give the motion until t_ns any better: each sensor has a sample
   /// from then or later, or has been silent for kSilenceNs before it.
@@ -59,7 +64,8 @@ public:
   std::optional<Attitude> attitude_at(std::int64_t t_ns) const;
   std::optional<WheelMotion> wheel_at(std::int64_t t_ns) const;
 
-  /// The IMU's with a yaw that HeadingJumpFilter keeps.
+  /// The IMU's, with orientations of AttitudeFilter where it sends none, and with a yaw that
+  /// HeadingJumpFilter keeps.
   const SampleHistory<ImuSample>& imu() const { return imu_; }
   const SampleHistory<EncoderSample>& wheel() const { return wheel_; }
   const HeadingJumpFilter& heading() const { return heading_; }
@@ -86,11 +92,13 @@ private:
   std::uint64_t drain(Ring<Sample>& ring);
   bool accept(ImuSample sample);
   bool accept(const EncoderSample& sample);
+  std::optional<double> mean_speed(std::int64_t t_ns) const;
 
   Ring<ImuSample> imu_ring_;
   Ring<EncoderSample> wheel_ring_;
   SampleHistory<ImuSample> imu_{kHistory};
   SampleHistory<EncoderSample> wheel_{kHistory};
+  AttitudeFilter attitude_;
   HeadingJumpFilter heading_;
   std::atomic<std::uint64_t> dropped_{0}, late_{0};
 };

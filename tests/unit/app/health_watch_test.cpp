@@ -40,7 +40,7 @@ protected:
   void measure(std::int64_t milliseconds) {
     const auto samples = static_cast<std::uint64_t>(milliseconds / 10);
     imu_.imu.samples += samples;
-    imu_.imu.oriented += samples;
+    imu_.imu.useful += samples;
     imu_.last_bytes_ns = imu_.last_message_ns = now_;
     encoder_.encoder.accepted += samples;
     encoder_.last_frame_ns = encoder_.last_sample_ns = now_;
@@ -165,7 +165,7 @@ TEST_F(HealthWatchTest, PulsesAndTheirLossAreSaidOnce) {
   EXPECT_THAT(drive(50), IsEmpty());
 }
 
-TEST_F(HealthWatchTest, AnImuWithoutOrientationIsNoUse) {
+TEST_F(HealthWatchTest, AnImuWithoutOrientationAndRateIsNoUse) {
   std::string log;
   for (int i = 0; i < 10; ++i) {
     imu_.imu.samples += 5;
@@ -173,7 +173,7 @@ TEST_F(HealthWatchTest, AnImuWithoutOrientationIsNoUse) {
     log += pass(50);
   }
   EXPECT_EQ(health_.imu.state, sensor_health_t::WRONG_DATA);
-  EXPECT_THAT(log, HasSubstr("are not understood (no orientation in them)"));
+  EXPECT_THAT(log, HasSubstr("are not understood (neither orientation nor rate of turn in them)"));
 }
 
 TEST_F(HealthWatchTest, MessagesOfHighRateAreNotRefused) {
@@ -254,7 +254,7 @@ TEST_F(HealthWatchTest, AnImuBelowItsConfiguredRateIsSlow) {
   EXPECT_EQ(health_.imu.expected_rate, 100);
   for (int i = 0; i < 21; ++i) {
     drive(50);
-    --imu_.imu.oriented;
+    --imu_.imu.useful;
   }
   EXPECT_EQ(health_.imu.state, sensor_health_t::SLOW);
   EXPECT_EQ(health_.state, health_t::OK);

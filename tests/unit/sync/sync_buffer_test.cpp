@@ -143,6 +143,23 @@ TEST_F(SyncBufferTest, PassesOverImuSamplesWithoutAnOrientation) {
   EXPECT_EQ(buffer_->late(), 0U);
 }
 
+TEST_F(SyncBufferTest, GivesAnAttitudeOfRatesAndAccelerationsWhereNoneIsSent) {
+  for (std::int64_t t = 0; t < 6 * kSecond; t += 10 * kMillisecond) {
+    ImuSample sample = turning(t, {0, 0, 0.5});
+    sample.acceleration = sample.orientation.conjugate() * Eigen::Vector3d(0, 0, 9.81);
+    sample.has_orientation = false;
+    sample.has_acceleration = true;
+    buffer_->put(sample);
+  }
+  buffer_->gather();
+  EXPECT_EQ(buffer_->late(), 0U);
+  EXPECT_FALSE(buffer_->attitude_at(kStart + kSecond / 2));
+  const auto before = buffer_->attitude_at(kStart + 5 * kSecond);
+  const auto after = buffer_->attitude_at(kStart + 11 * kSecond / 2);
+  ASSERT_TRUE(before && after);
+  EXPECT_NEAR(logarithm(before->rotation.conjugate() * after->rotation).z(), 0.25, 1e-3);
+}
+
 TEST_F(SyncBufferTest, AnEncoderOfTenFramesASecondIsNotSilent) {
   for (int i = 0; i < 10; ++i) buffer_->put(rolled(i * 101 * kMillisecond, 0.2 * i));
   buffer_->gather();

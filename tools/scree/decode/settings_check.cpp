@@ -7,7 +7,9 @@ namespace scree::cli {
 SettingsCheck::SettingsCheck(const std::filesystem::path& capture,
                              const std::filesystem::path& config, const Settings& settings,
                              const HostSteps& steps)
-    : probe_(settings), waiting_(settings.map.wait, *sensors_, [this](const Sweep& sweep) {
+    : sensors_(std::make_unique<SyncBuffer>(settings.imu.mount().rotation)),
+      probe_(settings),
+      waiting_(settings.map.wait, *sensors_, [this](const Sweep& sweep) {
         probe_.add(sweep, *sensors_);
         log_.add(probe_.report());
       }) {

@@ -27,7 +27,7 @@ public:
   std::vector<std::string> finish();
 
 private:
-  std::unique_ptr<SyncBuffer> sensors_ = std::make_unique<SyncBuffer>();
+  std::unique_ptr<SyncBuffer> sensors_;
   std::optional<MotionCapture> motion_;
   SetupProbe probe_;
   SetupLog log_;

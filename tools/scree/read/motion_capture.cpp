@@ -66,7 +66,11 @@ void MotionCapture::report(const TimeSpan& lidar) const {
   } else {
     report_capture(*imu_, imu_stream_);
     note(note_of_other_clock("IMU's bytes", imu_->span(), lidar));
-    if (imu_stream_.counters().oriented == 0) note("the IMU sent no orientation: it is not used");
+    if (imu_stream_.counters().useful == 0) {
+      note("the IMU sent neither orientation nor rate of turn: it is not used");
+    } else if (imu_stream_.counters().oriented == 0) {
+      note("the IMU sent no orientation: it was made of its rates and accelerations");
+    }
   }
   if (!encoder_) {
     note("no encoder in the capture");

@@ -17,6 +17,7 @@ struct ImuCounters {
   std::uint64_t accepted = 0;                         ///< MTData2 messages handed out
   std::uint64_t samples = 0;                          ///< IMU samples handed out
   std::uint64_t oriented = 0;                         ///< of them: with an orientation
+  std::uint64_t useful = 0;                           ///< ... or, before the first, with a rate
   std::uint64_t other_messages = 0;                   ///< whole, but not MTData2
   RefusalCounts refused{};                            ///< by Refusal
   std::uint64_t unknown_items = 0;                    ///< see ItemCounts
