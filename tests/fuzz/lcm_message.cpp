@@ -2,7 +2,7 @@
 #include <fuzzer/FuzzedDataProvider.h>
 
 #include <array>
-#include <cstring>
+#include <string_view>
 #include <vector>
 
 #include "memory_file.hpp"
@@ -13,8 +13,8 @@
 
 namespace {
 
-constexpr std::array<const char*, 3> kChannels = {scree::kObstaclesChannel, scree::kHealthChannel,
-                                                  scree::kGridChannel};
+constexpr std::array<std::string_view, 3> kChannels = {scree::kObstaclesChannel,
+                                                       scree::kHealthChannel, scree::kGridChannel};
 
 void put_u32(std::vector<std::uint8_t>& to, std::uint32_t value) {
   for (int shift = 24; shift >= 0; shift -= 8)
@@ -25,7 +25,7 @@ void put_u32(std::vector<std::uint8_t>& to, std::uint32_t value) {
 std::vector<std::uint8_t> datagram_of(FuzzedDataProvider& input) {
   std::vector<std::uint8_t> datagram;
   const bool is_short = input.ConsumeBool();
-  const char* channel = kChannels[input.ConsumeIntegralInRange<std::size_t>(0, 2)];
+  const std::string_view channel = kChannels[input.ConsumeIntegralInRange<std::size_t>(0, 2)];
   put_u32(datagram, is_short ? 0x4c433032 : 0x4c433033);
   put_u32(datagram, input.ConsumeIntegralInRange<std::uint32_t>(0, 3));
   std::uint32_t number = 0;
@@ -35,7 +35,10 @@ std::vector<std::uint8_t> datagram_of(FuzzedDataProvider& input) {
     number = input.ConsumeIntegralInRange<std::uint32_t>(0, 3);
     put_u32(datagram, number << 16U | input.ConsumeIntegralInRange<std::uint32_t>(0, 4));
   }
-  if (number == 0) datagram.insert(datagram.end(), channel, channel + std::strlen(channel) + 1);
+  if (number == 0) {
+    datagram.insert(datagram.end(), channel.begin(), channel.end());
+    datagram.push_back(0);
+  }
   const auto rest = input.ConsumeBytes<std::uint8_t>(input.ConsumeIntegralInRange<int>(0, 2000));
   datagram.insert(datagram.end(), rest.begin(), rest.end());
   return datagram;
