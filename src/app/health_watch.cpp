@@ -62,7 +62,7 @@ bool HealthWatch::update(std::int64_t now_ns, const LidarStatus& lidar, const Im
   log_first_packets(lidar);
   log_pulses(lidar);
   bool has_changed = update_sensors(now_ns, lidar, imu, encoder, health);
-  has_changed = update_setup(detector.setup, health) || has_changed;
+  has_changed = update_setup(now_ns, lidar, detector.setup, health) || has_changed;
 
   health.reason = blind_reason(now_ns, lidar, health.lidar.state, detector);
   const bool sees = health.reason.empty();
@@ -92,15 +92,22 @@ bool HealthWatch::update_sensors(std::int64_t now_ns, const LidarStatus& lidar,
 
 /// Each mistake is logged when it is found, and again with other numbers only when it comes back.
 /// @return whether there are others now
-bool HealthWatch::update_setup(const SetupReport& setup, health_t& health) {
+bool HealthWatch::update_setup(std::int64_t now_ns, const LidarStatus& lidar,
+                               const SetupReport& setup, health_t& health) {
   std::uint32_t named = 0;
   setup.for_each_slot([&](std::size_t slot, const SetupFinding&) { named |= 1U << slot; });
-  if (named == named_faults_) return false;
+  const bool was_slow = !keep_up_.sentence().empty();
+  const bool is_other = keep_up_.update(now_ns, lidar.lidar.sweeps, lidar.sweeps_dropped);
+  if (named == named_faults_ && !is_other) return false;
   health.setup.clear();
   setup.for_each_slot([&](std::size_t slot, const SetupFinding& finding) {
     health.setup.push_back(sentence(finding));
     if ((named_faults_ >> slot & 1U) == 0) add_line(true, health.setup.back());
   });
+  if (!keep_up_.sentence().empty()) {
+    health.setup.push_back(keep_up_.sentence());
+    if (!was_slow) add_line(true, keep_up_.sentence());
+  }
   health.setup_size = static_cast<std::int32_t>(health.setup.size());
   named_faults_ = named;
   return true;
@@ -138,9 +145,8 @@ SensorStatus HealthWatch::status_of(const ImuStatus& imu) const {
   status.lost = imu.imu.lost;
   add_refused(xsens::kRefusalNames, xsens::kRefusalReasons, imu.imu.refused, status);
   if (!gives_high_rates(settings_.imu)) {
-    status.refused.push_back(
-        {"no_orientation", "neither orientation nor rate of turn in them",
-         imu.imu.samples - imu.imu.useful});
+    status.refused.push_back({"no_orientation", "neither orientation nor rate of turn in them",
+                              imu.imu.samples - imu.imu.useful});
   }
   status.refused.push_back(
       {"stray_bytes", "bytes that belong to no message", imu.imu.bytes_skipped});
@@ -205,8 +211,7 @@ void HealthWatch::log_losses(std::int64_t now_ns, const LidarStatus& lidar,
     std::string_view what;
   };
   const std::array<Loss, kLosses> losses = {{
-      {lidar.sweeps_dropped,
-       "sweeps left out: this computer is too slow; scree bench says by how much"},
+      {lidar.sweeps_dropped, "sweeps left out: the detector was busy"},
       {detector.not_covered,
        "sweeps went on without the samples of IMU or encoder that cover them: those came later "
        "than map.wait"},

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "keep_up.hpp"
 #include "log_lines.hpp"
 #include "scree/config/settings.hpp"
 #include "scree/core/nanoseconds.hpp"
@@ -70,7 +71,8 @@ private:
   void add_line(bool is_warning, std::string text) {
     log_.push_back({is_warning, std::move(text)});
   }
-  bool update_setup(const SetupReport& setup, health_t& health);
+  bool update_setup(std::int64_t now_ns, const LidarStatus& lidar, const SetupReport& setup,
+                    health_t& health);
   void log_sight(std::int64_t now_ns, const std::string& reason);
   void log_first_packets(const LidarStatus& lidar);
   void log_pulses(const LidarStatus& lidar);
@@ -81,6 +83,7 @@ private:
   LogLines log_;
   SensorWatch lidar_, imu_, encoder_;
   velodyne::Firmware logged_firmware_ = velodyne::Firmware::undecided;
+  KeepUp keep_up_;
   std::uint32_t named_faults_ = 0;  // a bit for each slot of a SetupReport
   bool logs_sight_ = true;
   std::string logged_reason_;

@@ -39,7 +39,8 @@ class PackageTest(ProgramTest):
     def test_its_programs_find_its_files(self):
         root = self.unpack()
         for config in ["etc/scree/scree.toml", "usr/share/scree/cloud.toml", "usr/share/scree/map.toml",
-                       "usr/share/scree/paper.toml", "usr/share/scree/sweep.toml"]:
+                       "usr/share/scree/paper.toml", "usr/share/scree/small.toml",
+                       "usr/share/scree/sweep.toml"]:
             self.done(f"{root}/usr/bin/screed", "--check-config", "--config", f"{root}/{config}")
 
     def test_drop_ins_go_over_the_shipped_configuration(self):

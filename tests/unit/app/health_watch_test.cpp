@@ -327,6 +327,23 @@ TEST_F(HealthWatchTest, NamesASettingThatTheSensorsContradict) {
   EXPECT_THAT(health_.setup, IsEmpty());
 }
 
+TEST_F(HealthWatchTest, SaysHowManyTurnsADetectorThatIsTooSlowKeepsUpWith) {
+  std::string log;
+  const auto turn = [&](bool is_left_out) {
+    ++status_.lidar.sweeps;
+    if (is_left_out) ++status_.sweeps_dropped;
+    log += drive(100);
+  };
+  for (int i = 0; i < 150; ++i) turn(i == 70);
+  EXPECT_THAT(health_.setup, IsEmpty());
+  for (int i = 0; i < 120; ++i) turn(i % 4 != 0);
+  EXPECT_EQ(health_.state, health_t::OK);
+  EXPECT_THAT(health_.setup, Contains(HasSubstr("keeps up with 2.6 of 10.0 turns a second")));
+  EXPECT_THAT(log, HasSubstr("W the detector keeps up with"));
+  for (int i = 0; i < 120; ++i) turn(false);
+  EXPECT_THAT(health_.setup, IsEmpty());
+}
+
 TEST_F(HealthWatchTest, IsBlindWhereASettingSpoilsTheLists) {
   drive(100);
   SetupReport wrong;

@@ -228,6 +228,16 @@ TEST(Settings, ShippedPaperFileIsThePapersMethod) {
   EXPECT_EQ(toml_values(*settings), toml_values(paper));
 }
 
+TEST(Settings, TheDropInForSmallComputersIsCoarser) {
+  const auto settings = load_settings(std::string(SCREE_SOURCE) + "/config/small.toml");
+  ASSERT_TRUE(settings) << settings.error().message;
+  const Settings defaults;
+  EXPECT_GT(settings->map.voxel, defaults.map.voxel);
+  EXPECT_GT(settings->detect_map.surface.ground_cell, defaults.detect_map.surface.ground_cell);
+  EXPECT_LT(settings->memory.map_voxels, defaults.memory.map_voxels);
+  EXPECT_GE(settings->map.search_reach, settings->track.reach);
+}
+
 /// The shipped files are these very texts; SCREE_UPDATE=1 in the environment writes them anew.
 TEST(Settings, ShippedFilesAreTheDefaults) {
   for (const std::string_view file : kShippedFiles) {
