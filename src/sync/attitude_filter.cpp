@@ -1,13 +1,14 @@
 #include "scree/sync/attitude_filter.hpp"
 
 #include <Eigen/LU>
+#include <utility>
 
 #include "scree/core/rotation.hpp"
 
 namespace scree {
 namespace {
 
-constexpr std::int64_t kWindowNs = 500'000'000;
+constexpr std::int64_t kWindowNs = 250'000'000;
 constexpr std::int64_t kWheelNs = 200'000'000;  // so late the wheel's samples come at most
 constexpr double kLongest = 0.15;               // seconds without a sample: it begins anew
 constexpr double kGravity = 9.81;               // m/s^2
@@ -18,8 +19,8 @@ constexpr double kFirstTilt = 0.3;     // by one sample's specific force, rad
 constexpr double kFirstBias = 0.005;   // rad/s: 0.2 degrees/s in the data sheet of the MTi-1
 constexpr double kBiasWalk = 3e-5;     // rad/s in the square root of a second
 constexpr double kRateNoise = 0.001;   // rad in the square root of a second, with vibration
-constexpr double kWithWheel = 0.15;    // of a window: slip, bumps and vibration, m/s^2
-constexpr double kWithoutWheel = 0.5;  // ... and what the robot speeds up
+constexpr double kWithWheel = 0.19;    // of a window: slip, bumps and vibration, m/s^2
+constexpr double kWithoutWheel = 0.7;  // ... and what the robot speeds up
 
 double elapsed(std::int64_t since_ns, std::int64_t now_ns) {
   return static_cast<double>(now_ns - since_ns) * 1e-9;
@@ -97,19 +98,18 @@ void AttitudeFilter::push(const Eigen::Vector3d& specific_force, std::int64_t t_
   }
   force_ += force * seconds;
   if (has_bound_ && (waits_ || t_ns - end_.t_ns < kWindowNs)) return;
-  begin_ = end_;
-  end_ = {t_ns, orientation_ * ahead_in_imu_, force_};
+  const Bound bound{t_ns, orientation_ * ahead_in_imu_, force_};
+  begin_ = has_bound_ ? end_ : bound;
+  end_ = bound;
   force_.setZero();
-  waits_ = has_bound_;
-  if (!has_bound_) speed_.reset();
-  has_bound_ = true;
+  has_bound_ = waits_ = true;
 }
 
 /// The wheel's speed at its end is known by now, or will not be.
 void AttitudeFilter::close_window(const Speed& speed) {
   waits_ = false;
-  const std::optional<double> before = speed_;
-  speed_ = speed(end_.t_ns);
+  const std::optional<double> before = std::exchange(speed_, speed(end_.t_ns));
+  if (begin_.t_ns == end_.t_ns) return;  // the first bound
   Eigen::Vector3d force = end_.force;
   if (before && speed_) force -= *speed_ * end_.ahead - *before * begin_.ahead;
   update(force / elapsed(begin_.t_ns, end_.t_ns), before && speed_ ? kWithWheel : kWithoutWheel);

@@ -17,7 +17,7 @@ class AttitudeFilter {
 public:
   /// It answers when the IMU has sent no orientation for so long: one that does sends samples of
   /// high rate between, without.
-  static constexpr std::int64_t kWithoutNs = 1'000'000'000;
+  static constexpr std::int64_t kWithoutNs = 500'000'000;
 
   /// Speed of the robot along its x axis at an instant, m/s; nothing where that is not known.
   using Speed = std::function<std::optional<double>(std::int64_t t_ns)>;
@@ -57,9 +57,9 @@ private:
       Eigen::Matrix<double, kStates, kStates>::Zero();
   std::int64_t begin_ns_ = 0, turned_ns_ = 0, pushed_ns_ = 0;
   bool has_turned_ = false, is_level_ = false, has_bound_ = false, waits_ = false;
-  Bound begin_, end_;  // of the last whole window; while it waits for the wheel, end_ is newer
+  Bound begin_, end_;  // of the last window, which waits for the wheel; equal: there is none yet
   Eigen::Vector3d force_ = Eigen::Vector3d::Zero();  // integral since end_
-  std::optional<double> speed_;                      // at begin_
+  std::optional<double> speed_;                      // at end_, or at begin_ while it waits
 };
 
 }  // namespace scree

@@ -153,7 +153,7 @@ TEST_F(SyncBufferTest, GivesAnAttitudeOfRatesAndAccelerationsWhereNoneIsSent) {
   }
   buffer_->gather();
   EXPECT_EQ(buffer_->late(), 0U);
-  EXPECT_FALSE(buffer_->attitude_at(kStart + kSecond / 2));
+  EXPECT_FALSE(buffer_->attitude_at(kStart + kSecond / 4));
   const auto before = buffer_->attitude_at(kStart + 5 * kSecond);
   const auto after = buffer_->attitude_at(kStart + 11 * kSecond / 2);
   ASSERT_TRUE(before && after);
