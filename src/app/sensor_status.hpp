@@ -40,7 +40,7 @@ struct LidarStatus {
 struct ImuStatus {
   xsens::ImuCounters imu;
   std::int64_t last_bytes_ns = 0;
-  std::int64_t last_message_ns = 0;  ///< of a sample with an orientation
+  std::int64_t last_message_ns = 0;  ///< of a useful sample, see ImuCounters
   ClockStatus clock;
 };
 
