@@ -16,6 +16,7 @@ constexpr double kLevelled = 0.02;              // rad: the deviation from which
 
 // Standard deviations.
 constexpr double kFirstTilt = 0.3;     // by one sample's specific force, rad
+constexpr double kOwnTilt = 0.01;      // of an orientation that the IMU sent, rad
 constexpr double kFirstBias = 0.005;   // rad/s: 0.2 degrees/s in the data sheet of the MTi-1
 constexpr double kBiasWalk = 3e-5;     // rad/s in the square root of a second
 constexpr double kRateNoise = 0.001;   // rad in the square root of a second, with vibration
@@ -39,7 +40,7 @@ void AttitudeFilter::restart() {
 
 bool AttitudeFilter::complete(ImuSample& sample, const Speed& speed) {
   if (sample.has_orientation) {
-    restart();
+    go_on_from(sample);
     return true;
   }
   if (sample.has_rate) turn(sample);
@@ -52,6 +53,24 @@ bool AttitudeFilter::complete(ImuSample& sample, const Speed& speed) {
   sample.rate = rate_;
   sample.has_orientation = true;
   return true;
+}
+
+/// Should it be the last one.
+void AttitudeFilter::go_on_from(const ImuSample& sample) {
+  restart();
+  orientation_ = sample.orientation.normalized();
+  rate_ = sample.rate;
+  has_turned_ = sample.has_rate;
+  begin_ns_ = turned_ns_ = pushed_ns_ = sample.t_ns;
+  begin_with(kOwnTilt);
+}
+
+void AttitudeFilter::begin_with(double tilt) {
+  covariance_.setZero();
+  covariance_.diagonal().head<2>().setConstant(tilt * tilt);
+  covariance_.diagonal().tail<3>().setConstant(kFirstBias * kFirstBias);
+  force_.setZero();
+  is_level_ = true;
 }
 
 /// Turns by the mean of two rates, each less the bias.
@@ -85,11 +104,8 @@ void AttitudeFilter::push(const Eigen::Vector3d& specific_force, std::int64_t t_
     orientation_ =
         (Eigen::Quaterniond::FromTwoVectors(force, Eigen::Vector3d::UnitZ()) * orientation_)
             .normalized();
-    covariance_.setZero();
-    covariance_.diagonal().head<2>().setConstant(kFirstTilt * kFirstTilt);
-    covariance_.diagonal().tail<3>().setConstant(kFirstBias * kFirstBias);
     begin_ns_ = t_ns;
-    is_level_ = true;
+    begin_with(kFirstTilt);
     return;
   }
   if (!goes_on(seconds)) {

@@ -9,8 +9,8 @@
 
 namespace scree {
 
-/// Where `base` (or a sensor on it) was during a sweep, in `base` at the sweep's end, in equal steps
-/// of time.
+/// Where `base` (or a sensor on it) was during a sweep, in `base` at the sweep's end, in equal
+/// steps of time.
 class SweepTrajectory {
 public:
   static constexpr std::int64_t kLongestStepNs = 5'000'000;

@@ -12,7 +12,8 @@ namespace scree {
 /// Gives an orientation to the samples of an IMU that sends none (MTi-1, MTi-10, MTi-100). It
 /// integrates the rates. The specific force over a window of time, less what the robot speeds up
 /// and turns by its wheel, is gravity; a Kalman filter corrects roll, pitch and the bias of the
-/// rates by it. Yaw begins at zero and drifts.
+/// rates by it. Yaw begins at zero, or where the last orientation was that the IMU sent, and
+/// drifts.
 class AttitudeFilter {
 public:
   /// It answers when the IMU has sent no orientation for so long: one that does sends samples of
@@ -43,6 +44,8 @@ private:
     Eigen::Vector3d ahead = Eigen::Vector3d::Zero();  ///< x axis of `base`, in level
     Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< integral over the window before, m/s
   };
+  void go_on_from(const ImuSample& sample);
+  void begin_with(double tilt);
   void turn(const ImuSample& sample);
   void push(const Eigen::Vector3d& specific_force, std::int64_t t_ns);
   void close_window(const Speed& speed);

@@ -110,7 +110,7 @@ TEST_F(LevellingTest, LeavesTheMapAsItIsWhereASensorIsMissing) {
     sample.acceleration.y() = std::numeric_limits<double>::quiet_NaN();
   });
   EXPECT_EQ(lean_found(), 0) << "no number";
-  go(drive, 5, [](double, ImuSample& sample) { sample.has_orientation = false; });
+  go(drive, 5, [](double, ImuSample& sample) { sample.has_orientation = sample.has_rate = false; });
   EXPECT_EQ(lean_found(), 0) << "no attitude";
   has_wheel_ = false;
   go(drive, 5);
@@ -138,7 +138,7 @@ TEST_F(LevellingTest, RefusesAShock) {
 TEST_F(LevellingTest, GoesOnAfterSilence) {
   const test::SimpleDrive drive = test::helix(1, 0.5, 0);
   go(drive, 20, [](double t, ImuSample& sample) {
-    if (t > 3 && t < 6) sample.has_orientation = false;
+    if (t > 3 && t < 6) sample.has_orientation = sample.has_rate = false;
   });
   EXPECT_LT(lean_left(), 0.0015);
 }

@@ -109,6 +109,17 @@ TEST_F(AttitudeFilterTest, StaysOutOfTheWayOfAnImuThatSendsOrientations) {
   EXPECT_FALSE(has_attitude_) << "samples of high rate come between";
 }
 
+TEST_F(AttitudeFilterTest, GoesOnFromTheLastOrientationThatWasSent) {
+  ImuSample own;
+  own.t_ns = now_ns_;
+  own.has_orientation = own.has_rate = true;
+  own.orientation = truth_;
+  EXPECT_TRUE(complete(own));
+  drive(0.6, {0.1, 0.2, 0.3});
+  EXPECT_TRUE(has_attitude_);
+  EXPECT_LT(found_.orientation.angularDistance(truth_), 0.01);
+}
+
 TEST_F(AttitudeFilterTest, BeginsAnewAfterSilence) {
   drive(5, {0, 0, 0});
   now_ns_ += kSecond;
