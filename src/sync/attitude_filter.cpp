@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::int64_t kWindowNs = 250'000'000;
 constexpr std::int64_t kWheelNs = 200'000'000;  // so late the wheel's samples come at most
-constexpr double kLongest = 0.15;               // seconds without a sample: it begins anew
+constexpr double kGap = 0.15;                   // seconds without a sample: it begins anew
 constexpr double kGravity = 9.81;               // m/s^2
 constexpr double kLevelled = 0.02;              // rad: the deviation from which on it answers
 
@@ -28,7 +28,7 @@ double elapsed(std::int64_t since_ns, std::int64_t now_ns) {
 }
 
 bool goes_on(double seconds) {
-  return seconds > 0 && seconds < kLongest;
+  return seconds > 0 && seconds < kGap;
 }
 
 }  // namespace
