@@ -9,7 +9,7 @@ import socket
 import struct
 import sys
 
-from programs import ProgramTest, main
+from programs import SANITIZED, ProgramTest, main
 
 SCREE, DATA = sys.argv[1:3]
 
@@ -137,7 +137,8 @@ class FieldTest(ProgramTest):
         make = self.field("clock_step/make.py")
         drive = os.path.join(DATA, "captures", "interop")
         last = {}
-        for step in ("0", "0.05", "2", "86400", "-0.3", "-5", "-86400"):
+        steps = ("0", "-5") if SANITIZED else ("0", "0.05", "2", "86400", "-0.3", "-5", "-86400")
+        for step in steps:
             out = self.path("step" + step)
             self.done(sys.executable, make, drive, out, step)
             result = self.done(SCREE, "detect", out)

@@ -5,6 +5,7 @@
 
 #include "scree/core/nanoseconds.hpp"
 #include "simulator/drive.hpp"
+#include "simulator/imu.hpp"
 
 namespace scree {
 namespace {
@@ -14,18 +15,31 @@ double worst_tilt(CaptureSettings settings) {
   settings.cell = 0.1;
   settings.margin = 2;
   const Drive drive(settings);
-  const Eigen::Quaterniond mount = drive.robot.imu_mount().rotation;
-  const auto sensors = std::make_unique<SyncBuffer>(mount);
-  DriveFeed feed(drive, DriveFeed::kNoFaults);
-  double worst = 0;
-  for (Sweep sweep(1 << 15); feed.next(sweep, {sensors.get()});) {
+  const Pose mount = drive.robot.imu_mount();
+  const auto sensors = std::make_unique<SyncBuffer>(mount.rotation);
+  SimulatedImu imu(drive.motion, mount, draw_imu(settings), kDriveStartNs, settings.seed);
+  Pose before = drive.motion.base(kDriveStartNs);
+  double worst = 0, rolled = 0;
+  const std::int64_t end_ns = kDriveStartNs + static_cast<std::int64_t>(settings.seconds * 1e9);
+  for (ImuMessage sent = imu.next(); sent.t_ns < end_ns; sent = imu.next()) {
+    const Pose now = drive.motion.base(sent.t_ns);
+    rolled += (now.rotation.conjugate() * (now.translation - before.translation)).x();
+    before = now;
+    sensors->put(EncoderSample{.t_ns = sent.t_ns, .distance = rolled});
+    sensors->put(ImuSample{.t_ns = sent.t_ns,
+                           .has_orientation = sent.has_orientation,
+                           .has_rate = true,
+                           .has_acceleration = true,
+                           .orientation = sent.orientation,
+                           .rate = sent.rate_of_turn,
+                           .acceleration = sent.acceleration});
     sensors->gather();
-    if (sweep.end_ns < kDriveStartNs + 5 * kSecond) continue;
-    const auto attitude = sensors->attitude_at(sweep.end_ns);
+    if (sent.t_ns < kDriveStartNs + 5 * kSecond) continue;
+    const auto attitude = sensors->attitude_at(sent.t_ns);
     if (!attitude) return 4;
-    const Eigen::Vector3d up = mount * (attitude->rotation.conjugate() * Eigen::Vector3d::UnitZ());
-    const Eigen::Vector3d true_up =
-        drive.motion.base(sweep.end_ns).rotation.conjugate() * Eigen::Vector3d::UnitZ();
+    const Eigen::Vector3d up =
+        mount.rotation * (attitude->rotation.conjugate() * Eigen::Vector3d::UnitZ());
+    const Eigen::Vector3d true_up = now.rotation.conjugate() * Eigen::Vector3d::UnitZ();
     worst = std::max(worst, up.cross(true_up).norm());
   }
   return worst;
