@@ -16,8 +16,8 @@ SweepTrajectory SweepTrajectory::of_sensor(const Pose& mount) const {
 
 SweepTrajectory::Transform SweepTrajectory::at(std::int64_t before_end_ns) const {
   const float step = static_cast<float>(before_end_ns) / static_cast<float>(step_ns_);
+  if (!(step + 1 < static_cast<float>(transforms_.size()))) return transforms_.back();
   const auto index = static_cast<std::size_t>(std::max(step, 0.0F));
-  if (index + 1 >= transforms_.size()) return transforms_.back();
   const float share = step - static_cast<float>(index);
   const Transform& late = transforms_[index];
   const Transform& early = transforms_[index + 1];

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <boost/container/static_vector.hpp>
 #include <cstddef>
 #include <cstdint>
@@ -23,9 +24,10 @@ public:
 
   /// Standing still.
   SweepTrajectory() : transforms_(1) {}
+  /// @param step_ns below 1 counts as 1: sweeps of broken clocks may have no length
   void start(std::int64_t step_ns) {
     transforms_.clear();
-    step_ns_ = step_ns;
+    step_ns_ = std::max<std::int64_t>(step_ns, 1);
   }
   /// Takes one instant after the other, from the end backwards. False when full.
   bool push_back(const Transform& transform) {

@@ -173,5 +173,17 @@ TEST_F(DeskewTest, LeavesOutTheRobotsOwnBody) {
   EXPECT_LT((point(0) - lidar_.mount() * Eigen::Vector3d(-2, 0, -0.6)).norm(), 1e-6);
 }
 
+/// A filter's step may be below a nanosecond where the lidar's clock is broken.
+TEST(SweepTrajectory, OfNoLengthAnswersWithItsBegin) {
+  SweepTrajectory trajectory;
+  trajectory.start(0);
+  trajectory.push_back({});
+  trajectory.push_back({Eigen::Matrix3f::Identity(), {1, 2, 3}});
+  EXPECT_EQ(trajectory.at(0).translation, Eigen::Vector3f::Zero());
+  EXPECT_EQ(trajectory.at(100'000'000).translation, Eigen::Vector3f(1, 2, 3));
+  EXPECT_EQ(trajectory.at(std::numeric_limits<std::int64_t>::max()).translation,
+            Eigen::Vector3f(1, 2, 3));
+}
+
 }  // namespace
 }  // namespace scree
