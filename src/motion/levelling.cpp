@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 
+#include "scree/core/gravity.hpp"
 #include "scree/core/rotation.hpp"
 #include "scree/motion/pose_filter.hpp"
 #include "scree/motion/specific_force.hpp"

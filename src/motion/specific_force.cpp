@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "scree/core/gravity.hpp"
+
 namespace scree {
 
 std::optional<Eigen::Vector3d> integrate_specific_force(const SampleHistory<ImuSample>& imu,

@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <utility>
 
+#include "scree/core/gravity.hpp"
 #include "scree/core/rotation.hpp"
 
 namespace scree {
@@ -11,7 +12,6 @@ namespace {
 constexpr std::int64_t kWindowNs = 250'000'000;
 constexpr std::int64_t kWheelNs = 200'000'000;  // so late the wheel's samples come at most
 constexpr double kGap = 0.15;                   // seconds without a sample: it begins anew
-constexpr double kGravity = 9.81;               // m/s^2
 constexpr double kLevelled = 0.02;              // rad: the deviation from which on it answers
 
 // Standard deviations.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scree/core/gravity.hpp"
 #include "scree/core/rotation.hpp"
 #include "scree/motion/specific_force.hpp"
 

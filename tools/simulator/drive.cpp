@@ -206,13 +206,7 @@ void DriveFeed::feed_imu(std::int64_t t_ns, std::initializer_list<SyncBuffer*> s
       for (const std::uint8_t byte : mt_data2(next_sample_)) imu_noise_.pass(byte, imu_bytes_);
       imu_stream_.take(imu_bytes_, next_sample_.t_ns);
     } else {
-      decoded_.push_back({.t_ns = next_sample_.t_ns,
-                          .has_orientation = next_sample_.has_orientation,
-                          .has_rate = true,
-                          .has_acceleration = true,
-                          .orientation = next_sample_.orientation,
-                          .rate = next_sample_.rate_of_turn,
-                          .acceleration = next_sample_.acceleration});
+      decoded_.push_back(sample_of(next_sample_));
     }
     for (SyncBuffer* each : sensors) {
       for (const ImuSample& sample : decoded_) each->put(sample);

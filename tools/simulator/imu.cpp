@@ -3,12 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scree/core/gravity.hpp"
+
 namespace scree {
-namespace {
-
-constexpr double kGravity = 9.81;
-
-}  // namespace
 
 SimulatedImu::SimulatedImu(const Motion& motion, const Pose& mount,
                            const SimulatedImuSettings& settings, std::int64_t start_ns,
@@ -79,6 +76,16 @@ ImuMessage SimulatedImu::next() {
       from_roll_pitch_yaw(0, 0, yaw_) * from_roll_pitch_yaw(tilt_.x(), tilt_.y(), 0) * now.rotation;
   if (sample.orientation.w() < 0) sample.orientation.coeffs() *= -1;
   return sample;
+}
+
+ImuSample sample_of(const ImuMessage& message) {
+  return {.t_ns = message.t_ns,
+          .has_orientation = message.has_orientation,
+          .has_rate = true,
+          .has_acceleration = true,
+          .orientation = message.orientation,
+          .rate = message.rate_of_turn,
+          .acceleration = message.acceleration};
 }
 
 }  // namespace scree

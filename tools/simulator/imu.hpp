@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 
+#include "scree/core/imu_sample.hpp"
 #include "scree/core/random.hpp"
 #include "simulator/motion.hpp"
 #include "simulator/xbus.hpp"
@@ -56,5 +57,8 @@ private:
   Eigen::Vector2d tilt_;
   double yaw_, yaw_rate_;
 };
+
+/// What a decoder makes of an undamaged message.
+ImuSample sample_of(const ImuMessage& message);
 
 }  // namespace scree

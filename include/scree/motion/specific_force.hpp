@@ -8,8 +8,6 @@
 
 namespace scree {
 
-inline constexpr double kGravity = 9.81;  // m/s^2
-
 /// The integral of the IMU's specific force from one instant to another, in its level frame, m/s.
 /// Nothing where the acceleration is missing for more than half of the time.
 std::optional<Eigen::Vector3d> integrate_specific_force(const SampleHistory<ImuSample>& imu,

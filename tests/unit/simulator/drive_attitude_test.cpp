@@ -26,13 +26,7 @@ double worst_tilt(CaptureSettings settings) {
     rolled += (now.rotation.conjugate() * (now.translation - before.translation)).x();
     before = now;
     sensors->put(EncoderSample{.t_ns = sent.t_ns, .distance = rolled});
-    sensors->put(ImuSample{.t_ns = sent.t_ns,
-                           .has_orientation = sent.has_orientation,
-                           .has_rate = true,
-                           .has_acceleration = true,
-                           .orientation = sent.orientation,
-                           .rate = sent.rate_of_turn,
-                           .acceleration = sent.acceleration});
+    sensors->put(sample_of(sent));
     sensors->gather();
     if (sent.t_ns < kDriveStartNs + 5 * kSecond) continue;
     const auto attitude = sensors->attitude_at(sent.t_ns);
