@@ -3,7 +3,10 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <memory>
 
+#include "bench/pcl_chain.hpp"
 #include "scree/detect/cell.hpp"
 #include "scree/detect/detector.hpp"
 #include "simulator/cloud.hpp"
@@ -64,6 +67,69 @@ void whole_chain(benchmark::State& state, const DetectSettings& method) {
 }
 BENCHMARK_CAPTURE(whole_chain, paper, DetectSettings::for_paper())->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(whole_chain, surface, DetectSettings::for_cloud())->Unit(benchmark::kMillisecond);
+
+/// The paper's method with plain Euclidean clustering: PCL has all that it needs.
+DetectSettings plain_settings() {
+  DetectSettings plain = DetectSettings::for_paper();
+  plain.edges.clustering = EdgeClustering::euclidean;
+  plain.edges.cluster_tolerance = 0.15;
+  return plain;
+}
+
+Network paper_network() {
+  Result<Network> network =
+      Network::load(std::filesystem::path(SCREE_SOURCE) / "config" / settings().network);
+  return network ? *network : Network();
+}
+
+/// How many of the obstacles have one of the same kind within 5 cm in the other list.
+std::size_t agreeing(const FixedVector<Obstacle>& ours, const FixedVector<Obstacle>& theirs) {
+  constexpr double kNear = 0.05;  // metres
+  return static_cast<std::size_t>(std::ranges::count_if(ours, [&](const Obstacle& one) {
+    return std::ranges::any_of(theirs, [&](const Obstacle& other) {
+      return one.kind == other.kind && (one.center - other.center).norm() < kNear;
+    });
+  }));
+}
+
+void plain_chain(benchmark::State& state) {
+  Detector detector(plain_settings(), limits(), paper_network());
+  FixedVector<Obstacle> obstacles(1024);
+  for (auto _ : state) detector.detect(cloud(), obstacles);
+  state.counters["obstacles"] = static_cast<double>(obstacles.size());
+}
+BENCHMARK(plain_chain)->Unit(benchmark::kMillisecond);
+
+void plain_chain_of_pcl(benchmark::State& state) {
+  Detector detector(plain_settings(), limits(), paper_network());
+  FixedVector<Obstacle> obstacles(1024), ours(1024);
+  detector.detect(cloud(), ours);
+  bench::PclChain chain(plain_settings(), max_points(), paper_network());
+  const auto input = std::make_shared<pcl::PointCloud<pcl::PointXYZI>>();
+  for (std::size_t i = 0; i < cloud().size(); ++i) {
+    input->push_back({cloud().x[i], cloud().y[i], cloud().z[i], cloud().reflectivity[i]});
+  }
+  for (auto _ : state) chain.detect(input, obstacles);
+  state.counters["obstacles"] = static_cast<double>(obstacles.size());
+  state.counters["as_ours"] = static_cast<double>(agreeing(obstacles, ours));
+}
+BENCHMARK(plain_chain_of_pcl)->Unit(benchmark::kMillisecond);
+
+/// How the time grows with the cloud.
+void growth(benchmark::State& state) {
+  CloudSettings settings;
+  settings.points = static_cast<std::size_t>(state.range(0));
+  const PointCloud input = reconstructed_cloud(Terrain(TerrainSettings{}, 1), settings, 1);
+  Detector detector(DetectSettings::for_cloud(), limits(), Network());
+  FixedVector<Obstacle> obstacles(1024);
+  for (auto _ : state) detector.detect(input, obstacles);
+}
+BENCHMARK(growth)
+    ->Unit(benchmark::kMillisecond)
+    ->Arg(125'000)
+    ->Arg(250'000)
+    ->Arg(500'000)
+    ->Arg(1'000'000);
 
 void voxel_grid(benchmark::State& state) {
   VoxelGrid grid(max_points());
