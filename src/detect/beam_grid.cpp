@@ -3,11 +3,33 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <optional>
 
 #include "scree/detect/neighbours.hpp"
 
 namespace scree {
 namespace {
+
+/// The cell of a point. The raster is laid out for the points that found room; others may lie at
+/// its edge or beyond, and have none.
+std::optional<std::size_t> cell_of(PointView cloud, std::size_t i, const GroundSurface& surface) {
+  const float x = cloud.x[i], y = cloud.y[i];
+  if (!std::isfinite(x) || !std::isfinite(y)) return {};
+  const std::size_t cell = surface.cell_at(x, y);
+  if (!surface.has_neighbours(cell)) return {};
+  return cell;
+}
+
+/// The sum over the cells up to `reach` from one.
+float sum_around(const FixedVector<float>& of, std::size_t cell, std::size_t reach,
+                 std::size_t columns) {
+  float total = 0;
+  const std::size_t first = cell - reach * columns - reach;
+  for (std::size_t row = first; row <= first + 2 * reach * columns; row += columns) {
+    for (std::size_t near = row; near <= row + 2 * reach; ++near) total += of[near];
+  }
+  return total;
+}
 
 bool is_solid(const BeamCount& beams) {
   constexpr float kShare = 0.9F;
@@ -16,6 +38,25 @@ bool is_solid(const BeamCount& beams) {
 }
 
 }  // namespace
+
+void BeamGrid::find_loose(PointView cloud, std::span<const BeamCount> beams,
+                          const GroundSurface& surface, float lowest, float highest) {
+  assert(beams.size() == cloud.size());
+  const std::size_t cells = surface.columns() * surface.rows();
+  ended_.assign(cells, 0);
+  scatter_.assign(cells, 0);
+  highest_.assign(cells, 0);
+  loose_.assign(cells, 0);
+  surface.for_each_height(cloud, [&](std::size_t i, float height) {
+    if (!(height >= lowest && height <= highest)) return;
+    const std::optional<std::size_t> cell = cell_of(cloud, i, surface);
+    if (!cell) return;
+    ended_[*cell] += beams[i].ended;
+    scatter_[*cell] += beams[i].scatter;
+    highest_[*cell] = std::max(highest_[*cell], height);
+  });
+  mark_loose(surface.columns());
+}
 
 void BeamGrid::build(PointView cloud, std::span<const BeamCount> beams,
                      const GroundSurface& surface, float lowest, float highest) {
@@ -30,50 +71,47 @@ void BeamGrid::build(PointView cloud, std::span<const BeamCount> beams,
   all_ended_.assign(cells, 0);
   all_scatter_.assign(cells, 0);
   loose_.assign(cells, 0);
-  for (std::size_t i = 0; i < beams.size(); ++i) {
-    const float x = cloud.x[i], y = cloud.y[i];
-    if (!std::isfinite(x) || !std::isfinite(y)) continue;
-    const float height = cloud.z[i] - surface.height(x, y);
-    if (!(height <= highest)) continue;
-    const std::size_t cell = surface.cell_at(x, y);
-    // The raster is laid out for the points that found room; others may lie at its edge or beyond.
-    if (!surface.has_neighbours(cell)) continue;
-    all_ended_[cell] += beams[i].ended;
-    all_scatter_[cell] += beams[i].scatter;
-    if (height < lowest) continue;
-    ended_[cell] += beams[i].ended;
-    passed_[cell] += beams[i].passed;
-    scatter_[cell] += beams[i].scatter;
-    if (is_solid(beams[i])) solid_[cell] += beams[i].ended;
-    highest_[cell] = std::max(highest_[cell], height);
-  }
   if (beams.empty()) return;
+  surface.for_each_height(cloud, [&](std::size_t i, float height) {
+    if (!(height <= highest)) return;
+    const std::optional<std::size_t> cell = cell_of(cloud, i, surface);
+    if (!cell) return;
+    all_ended_[*cell] += beams[i].ended;
+    all_scatter_[*cell] += beams[i].scatter;
+    if (height < lowest) return;
+    ended_[*cell] += beams[i].ended;
+    passed_[*cell] += beams[i].passed;
+    scatter_[*cell] += beams[i].scatter;
+    if (is_solid(beams[i])) solid_[*cell] += beams[i].ended;
+    highest_[*cell] = std::max(highest_[*cell], height);
+  });
   look_around(surface.columns());
-  absorb_small_patches(surface.columns());
+  mark_loose(surface.columns());
 }
 
-/// Sets what is known of a cell by its neighbours, too.
 void BeamGrid::look_around(std::size_t columns) {
   constexpr std::size_t kReach = 2;  // cells
+  const std::size_t margin = kReach * columns + kReach;
+  for (std::size_t cell = margin; cell + margin < ended_.size(); ++cell) {
+    if (ended_[cell] == 0) continue;
+    ended_share_around_[cell] = share(sum_around(ended_, cell, kReach, columns),
+                                      sum_around(passed_, cell, kReach, columns));
+  }
+}
+
+/// Blades scatter the ranges as far as a tuft is deep, a rock by the sensor's noise.
+void BeamGrid::mark_loose(std::size_t columns) {
   // Loose is what scatters more than this share of its height. Heights are taken from metres below
   // the surface, so that the sensor's noise on low stones is not enough.
   constexpr float kLooseShare = 0.12F, kLooseBase = 0.05F;
-  const std::size_t margin = kReach * columns + kReach;
-  const auto sum = [columns](const FixedVector<float>& of, std::size_t cell, std::size_t reach) {
-    float total = 0;
-    const std::size_t first = cell - reach * columns - reach;
-    for (std::size_t row = first; row <= first + 2 * reach * columns; row += columns) {
-      for (std::size_t near = row; near <= row + 2 * reach; ++near) total += of[near];
-    }
-    return total;
-  };
+  const std::size_t margin = columns + 1;
   for (std::size_t cell = margin; cell + margin < ended_.size(); ++cell) {
     if (ended_[cell] == 0) continue;
-    ended_share_around_[cell] = share(sum(ended_, cell, kReach), sum(passed_, cell, kReach));
-    // Blades scatter the ranges as far as a tuft is deep, a rock by the sensor's noise.
-    const float scatter = sum(scatter_, cell, 1) / sum(ended_, cell, 1);
+    const float scatter =
+        sum_around(scatter_, cell, 1, columns) / sum_around(ended_, cell, 1, columns);
     loose_[cell] = scatter > kLooseShare * (highest_[cell] + kLooseBase) ? 1 : 0;
   }
+  absorb_small_patches(columns);
 }
 
 /// A few firm cells beside loose ones are as loose as those, and the other way round.

@@ -92,11 +92,10 @@ void ClusterContext::build(PointView cloud, const CandidatePoints& edges,
                            const GroundSurface& surface) {
   constexpr float kGroundTolerance = 0.05F;  // metres
   ground_seen_.assign(4 * surface.columns() * surface.rows(), 0);
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const float x = cloud.x[i], y = cloud.y[i];
-    if (std::abs(cloud.z[i] - surface.height(x, y)) > kGroundTolerance) continue;
-    ground_seen_[quarter_at(x, y, surface)] = 1;
-  }
+  surface.for_each_height(cloud, [&](std::size_t i, float height) {
+    if (std::abs(height) > kGroundTolerance) return;
+    ground_seen_[quarter_at(cloud.x[i], cloud.y[i], surface)] = 1;
+  });
   sides_.assign(surface.columns() * surface.rows(), 0);
   visited_.assign(surface.columns() * surface.rows(), 0);
   lowest_.resize(visited_.size());

@@ -4,6 +4,7 @@
 
 #include "scree/detect/cell.hpp"
 #include "scree/detect/classification.hpp"
+#include "scree/detect/overhangs.hpp"
 
 namespace scree {
 
@@ -13,7 +14,6 @@ Detector::Detector(const DetectSettings& settings, const DetectorLimits& limits,
       min_confidence_(settings.min_confidence),
       network_(std::move(network)),
       voxel_grid_(leaf_size_ > 0 ? limits.points : 0),
-      overhangs_(clearance_ > 0 ? limits.points : 0),
       points_(limits.points),
       method_(make_method(settings, limits)),
       polygons_(std::max(limits.candidates, limits.ground_cells)),
@@ -30,7 +30,7 @@ float Detector::common_reach() const {
   const std::size_t points = points_.capacity();
   if (leaf_size_ > 0) reach = std::min(reach, reach_of_cells(leaf_size_, points, 3));
   if (clearance_ > 0) {
-    reach = std::min(reach, reach_of_cells(PlaneCells::cell_size(Overhangs::kRadius), points, 2));
+    reach = std::min(reach, reach_of_cells(PlaneCells::cell_size(kOverhangRadius), points, 2));
   }
   return reach;
 }
@@ -56,7 +56,7 @@ void Detector::take_in(PointView cloud) {
   counts_.refused = intake.refused;
   counts_.voxels = points_.size();
   if (clearance_ > 0) {
-    std::visit([this](auto& method) { overhangs_.remove(points_, clearance_, method.cells()); },
+    std::visit([this](auto& method) { remove_overhangs(points_, clearance_, method.cells()); },
                method_);
   }
   counts_.below_clearance = points_.size();

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "scree/detect/label.hpp"
+#include "scree/detect/multiversion.hpp"
 #include "scree/detect/neighbours.hpp"
 #include "scree/detect/quantile.hpp"
 #include "scree/detect/union_find.hpp"
@@ -15,6 +16,36 @@ namespace {
 
 constexpr float kUnseen = std::numeric_limits<float>::quiet_NaN();
 constexpr std::size_t kBorder = 2;  // empty cells all around, so that every cell has neighbours
+
+/// The raster of a surface, for loops that read registers only.
+struct SurfaceRaster {
+  const float* heights;
+  std::int32_t columns, rows;
+  float low_x, low_y, inverse;
+};
+
+/// A place that is no number counts as the raster's edge.
+SCREE_MULTIVERSION
+void subtract_surface(const SurfaceRaster raster, const float* x, const float* y, const float* z,
+                      std::size_t count, float* __restrict out) {
+  const float last_u = static_cast<float>(raster.columns) - 1.001F;
+  const float last_v = static_cast<float>(raster.rows) - 1.001F;
+  for (std::size_t i = 0; i < count; ++i) {
+    float u = (x[i] - raster.low_x) * raster.inverse - 0.5F;
+    float v = (y[i] - raster.low_y) * raster.inverse - 0.5F;
+    u = u > 0 ? u : 0;
+    v = v > 0 ? v : 0;
+    u = u < last_u ? u : last_u;
+    v = v < last_v ? v : last_v;
+    const auto column = static_cast<std::int32_t>(u), row = static_cast<std::int32_t>(v);
+    const float share_u = u - static_cast<float>(column), share_v = v - static_cast<float>(row);
+    const std::int32_t at = row * raster.columns + column, above = at + raster.columns;
+    const float* const heights = raster.heights;
+    const float near = heights[at] + share_u * (heights[at + 1] - heights[at]);
+    const float far = heights[above] + share_u * (heights[above + 1] - heights[above]);
+    out[i] = z[i] - (near + share_v * (far - near));
+  }
+}
 
 }  // namespace
 
@@ -121,11 +152,6 @@ float GroundSurface::gather(PointView points) {
   return static_cast<float>(points.size()) / static_cast<float>(std::max<std::size_t>(occupied, 1));
 }
 
-float GroundSurface::height_in(std::size_t cell, double share) {
-  const std::span<float> heights(z_.begin() + begin_[cell], points_in(cell));
-  return heights.empty() ? kUnseen : quantile(heights, share);
-}
-
 float GroundSurface::blurred(std::size_t cell) const {
   float weight = 0, height = 0;
   for (std::size_t v = 0; v < 3; ++v) {
@@ -139,6 +165,18 @@ float GroundSurface::blurred(std::size_t cell) const {
     }
   }
   return weight > 0 ? height / weight : kUnseen;
+}
+
+void GroundSurface::heights_above(PointView points, std::span<float> heights) const {
+  subtract_surface({smooth_.data(), static_cast<std::int32_t>(columns_),
+                    static_cast<std::int32_t>(rows_), low_x_, low_y_, inverse_},
+                   points.x.data(), points.y.data(), points.z.data(), points.size(),
+                   heights.data());
+}
+
+float GroundSurface::height_in(std::size_t cell, double share) {
+  const std::span<float> heights(z_.begin() + begin_[cell], points_in(cell));
+  return heights.empty() ? kUnseen : quantile(heights, share);
 }
 
 void GroundSurface::find_smooth_cells(float max_slope) {

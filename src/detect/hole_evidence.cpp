@@ -10,6 +10,7 @@ namespace scree {
 namespace {
 
 constexpr float kBelow = 0.06F;  // metres: what lies deeper is below the ground
+constexpr float kFarthest = 15;  // metres that passing beams are followed
 
 }  // namespace
 
@@ -19,6 +20,8 @@ HoleEvidence::HoleEvidence(std::size_t max_cells)
       beams_below_(max_cells),
       lost_beams_(max_cells),
       lowest_beam_(max_cells),
+      // The tiles of any raster with at least five rows and columns, which the border gives it.
+      tops_(max_cells / 64 + 64),
       cells_(max_cells),
       taken_by_(max_cells) {}
 
@@ -33,22 +36,62 @@ void HoleEvidence::build(const SeenCloud& cloud, const GroundSurface& surface) {
   number_ = 0;
   knows_beams_ = !cloud.origins.empty();
   if (!knows_beams_) return;
-  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+  surface.for_each_height(cloud.points, [&](std::size_t i, float height) {
+    if (!(height <= -kBelow)) return;
     const Eigen::Vector3f point(cloud.points.x[i], cloud.points.y[i], cloud.points.z[i]);
-    if (!point.allFinite() || point.z() > surface.height(point.x(), point.y()) - kBelow) continue;
-    follow(cloud.origin_of(i), point, surface);
-  }
+    if (point.allFinite()) follow(cloud.origin_of(i), point, surface);
+  });
+  if (!cloud.passing.empty()) find_tops(surface);
   for (const PassingBeam& beam : cloud.passing) follow_passing(beam, surface);
 }
 
-/// Follows a beam down to the surface, and a way on below it.
+/// Sets the highest place of each tile, seen or spanned, with the cells beside it.
+void HoleEvidence::find_tops(const GroundSurface& surface) {
+  const std::size_t columns = surface.columns(), rows = surface.rows();
+  tile_columns_ = columns / kTile + 1;
+  tops_.assign(tile_columns_ * (rows / kTile + 1), -std::numeric_limits<float>::infinity());
+  for (std::size_t tile = 0; tile < tops_.size(); ++tile) {
+    const std::size_t left = tile % tile_columns_ * kTile, low = tile / tile_columns_ * kTile;
+    for (std::size_t row = low - std::min<std::size_t>(low, 1);
+         row < std::min(low + kTile + 1, rows); ++row) {
+      for (std::size_t column = left - std::min<std::size_t>(left, 1);
+           column < std::min(left + kTile + 1, columns); ++column) {
+        const std::size_t cell = row * columns + column;
+        tops_[tile] = std::max({tops_[tile], surface.level(cell), surface.top(cell)});
+      }
+    }
+  }
+}
+
+/// How many strides of a cell a beam surely stays within the tile of a place and above all in it.
+int HoleEvidence::steps_above(const Eigen::Vector3f& place, const Eigen::Vector3f& direction,
+                              const GroundSurface& surface) const {
+  const float u = surface.column_of(place.x()), v = surface.row_of(place.y());
+  const auto tile_u = static_cast<std::size_t>(u) / kTile;
+  const auto tile_v = static_cast<std::size_t>(v) / kTile;
+  const float above = place.z() - tops_[tile_v * tile_columns_ + tile_u];
+  if (!(above > 0)) return 0;
+  const auto steps = [](float at, std::size_t tile, float along) {
+    constexpr float kNever = 1e6F;
+    if (along == 0) return kNever;
+    return (static_cast<float>((tile + (along > 0 ? 1 : 0)) * kTile) - at) / along;
+  };
+  const float down = above / (-direction.z() * surface.cell_size());
+  const float least =
+      std::min({steps(u, tile_u, direction.x()), steps(v, tile_v, direction.y()), down});
+  constexpr float kRounding = 0.01F;  // steps
+  return static_cast<int>(std::clamp(least - kRounding, 0.0F, kFarthest / surface.cell_size()));
+}
+
+/// Follows a beam down to the surface, and a way on below it. @pre it goes down
 void HoleEvidence::follow_passing(const PassingBeam& beam, const GroundSurface& surface) {
-  constexpr float kFarthest = 15, kBelowFor = 4;  // metres
+  constexpr float kBelowFor = 4;  // metres
   const Eigen::Vector3f stride = surface.cell_size() * beam.direction;
   const auto steps = static_cast<int>(kFarthest / surface.cell_size());
-  Eigen::Vector3f at = beam.origin;
-  for (int i = 0; i < steps; ++i, at += stride) {
+  for (int i = 0; i < steps; ++i) {
+    const Eigen::Vector3f at = beam.origin + static_cast<float>(i) * stride;
     if (!surface.covers(at.x(), at.y())) return;
+    i += steps_above(at, beam.direction, surface);
     if (at.z() > surface.height(at.x(), at.y())) {
       // It should have ended there: a shot whose return was lost.
       if (surface.top(surface.cell_at(at.x(), at.y())) > at.z() + kBelow) return;

@@ -2,22 +2,34 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 
 namespace scree {
+namespace {
 
-void Overhangs::remove(PointCloud& cloud, float clearance, PlaneCells& columns) {
-  constexpr std::uint32_t kGroundRank = 2;  // from 0
-  columns.build(cloud, kRadius);
+/// Infinity where there are fewer.
+float third_lowest(std::span<const float> heights) {
+  constexpr float kNone = std::numeric_limits<float>::infinity();
+  float first = kNone, second = kNone, third = kNone;
+  for (const float height : heights) {
+    const float above_first = std::max(first, height);
+    const float above_second = std::max(second, above_first);
+    first = std::min(first, height);
+    second = std::min(second, above_first);
+    third = std::min(third, above_second);
+  }
+  return third;
+}
+
+}  // namespace
+
+void remove_overhangs(PointCloud& cloud, float clearance, PlaneCells& columns) {
+  columns.build(cloud, kOverhangRadius);
   const PointCloud& sorted = columns.points();
   cloud.clear();
   columns.for_each_cell([&](Run column, std::span<const Run>) {
-    float ceiling = std::numeric_limits<float>::max();
-    if (column.end - column.begin > kGroundRank) {
-      heights_.clear();
-      for (std::uint32_t i = column.begin; i < column.end; ++i) heights_.push_back(sorted.z[i]);
-      std::nth_element(heights_.begin(), heights_.begin() + kGroundRank, heights_.end());
-      ceiling = heights_[kGroundRank] + clearance;
-    }
+    const float ceiling =
+        third_lowest({sorted.z.begin() + column.begin, sorted.z.begin() + column.end}) + clearance;
     for (std::uint32_t i = column.begin; i < column.end; ++i) {
       if (sorted.z[i] > ceiling) continue;
       cloud.push_back(sorted.x[i], sorted.y[i], sorted.z[i], sorted.reflectivity[i]);

@@ -90,7 +90,7 @@ void SurfaceMethod::build_ground(const SeenCloud& cloud) {
   } else {
     // What is loose, a rough surface tells.
     surface_.build(sloped_.points(), ground, GroundSurface::Accuracy::rough);
-    beam_grid_.build(cloud.points, cloud.beams, surface_, lowest, highest_);
+    beam_grid_.find_loose(cloud.points, cloud.beams, surface_, lowest, highest_);
     surface_.build_below(beam_grid_.loose(), ground);
   }
   beam_grid_.build(cloud.points, cloud.beams, surface_, lowest, highest_);
@@ -103,10 +103,11 @@ void SurfaceMethod::build_ground(const SeenCloud& cloud) {
 void SurfaceMethod::leave_out_ground_below_edges() {
   const PointCloud& points = sloped_.points();
   const auto highest = static_cast<float>(settings_.body_height);
+  height_.resize(points.size());
+  surface_.heights_above(points, height_);
   sloped_.cells.remove([&](std::size_t i) {
-    const float x = points.x[i], y = points.y[i];
-    return beam_grid_.stops_all(surface_.cell_at(x, y)) &&
-           std::abs(points.z[i] - surface_.height(x, y)) < highest;
+    return std::abs(height_[i]) < highest &&
+           beam_grid_.stops_all(surface_.cell_at(points.x[i], points.y[i]));
   });
 }
 
@@ -115,12 +116,14 @@ void SurfaceMethod::mark_points_off_ground() {
   const auto least = static_cast<float>(settings_.body_height);
   height_.resize(points.size());
   is_off_ground_.resize(points.size());
+  surface_.heights_above(points, height_);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    height_[i] = points.z[i] - surface_.height(points.x[i], points.y[i]);
+    is_off_ground_[i] = 0;
+    if (std::abs(height_[i]) < least) continue;
     const std::size_t cell = surface_.cell_at(points.x[i], points.y[i]);
     // Among grass the ground is seen, and what stands on it.
     const bool is_ground = surface_.is_ground(cell) && !beam_grid_.is_loose(cell);
-    is_off_ground_[i] = std::abs(height_[i]) >= least && !is_ground ? 1 : 0;
+    is_off_ground_[i] = is_ground ? 0 : 1;
   }
 }
 

@@ -13,8 +13,10 @@ struct PointView {
   std::span<const float> x, y, z, reflectivity;
 
   std::size_t size() const { return x.size(); }
-  PointView first(std::size_t count) const {
-    return {x.first(count), y.first(count), z.first(count), reflectivity.first(count)};
+  PointView first(std::size_t count) const { return subview(0, count); }
+  PointView subview(std::size_t begin, std::size_t count) const {
+    return {x.subspan(begin, count), y.subspan(begin, count), z.subspan(begin, count),
+            reflectivity.subspan(begin, count)};
   }
 };
 

@@ -10,7 +10,6 @@
 #include "scree/detect/edge_method.hpp"
 #include "scree/detect/enclosing_polygon.hpp"
 #include "scree/detect/network.hpp"
-#include "scree/detect/overhangs.hpp"
 #include "scree/detect/stage_counts.hpp"
 #include "scree/detect/surface_method.hpp"
 #include "scree/detect/voxel_grid.hpp"
@@ -61,7 +60,6 @@ private:
   double min_confidence_;
   Network network_;
   VoxelGrid voxel_grid_;
-  Overhangs overhangs_;
   PointCloud points_;
   AnyMethod method_;
   EnclosingPolygons polygons_;

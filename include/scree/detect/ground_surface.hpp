@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -47,6 +48,12 @@ public:
   /// Gives z of the surface of the last build, bilinear, metres. A place outside the raster has the
   /// height of the nearest cell.
   float height(float x, float y) const;
+  /// Gives the heights of points above the surface, metres: `z - height(x, y)`.
+  /// @param heights as many as points
+  void heights_above(PointView points, std::span<float> heights) const;
+  /// Calls visit(i, height above the surface) for each of the points, in their order.
+  template <class Visit>
+  void for_each_height(PointView points, Visit&& visit) const;
 
   // The raster, row by row, for stages that walk over it.
   bool is_ground(std::size_t cell) const { return ground_[cell] != 0; }
@@ -54,6 +61,8 @@ public:
   float roughness(std::size_t cell) const { return std::abs(seen_[cell] - smooth_[cell]); }
   /// Median height of the points in a cell, metres; NaN: not seen.
   float seen(std::size_t cell) const { return seen_[cell]; }
+  /// z of the surface in the middle of a cell, metres.
+  float level(std::size_t cell) const { return smooth_[cell]; }
   /// z of the highest point in a cell, metres; minus infinity without one.
   float top(std::size_t cell) const { return top_[cell]; }
   /// Whether a cell lies in a crater whose flanks are gentle enough for ground.
@@ -117,7 +126,7 @@ private:
   FixedVector<float> z_;              // z of the points, cell by cell
   FixedVector<float> seen_;           // height seen in each cell; NaN: no point
   FixedVector<float> top_;            // z of the highest point in each cell
-  FixedVector<float> smooth_;         // scratch: blurred heights, then the ground's
+  FixedVector<float> smooth_;         // scratch: blurred heights, then the surface
   FixedVector<std::uint8_t> ground_;
   FixedVector<std::uint32_t> patch_;  // number of each cell's patch
   FixedVector<std::uint32_t> queue_;
@@ -140,6 +149,16 @@ inline std::size_t GroundSurface::cell_at(float x, float y) const {
   };
   return index((y - low_y_) * inverse_, rows_) * columns_ +
          index((x - low_x_) * inverse_, columns_);
+}
+
+template <class Visit>
+void GroundSurface::for_each_height(PointView points, Visit&& visit) const {
+  std::array<float, 256> heights;
+  for (std::size_t first = 0; first < points.size(); first += heights.size()) {
+    const std::size_t count = std::min(heights.size(), points.size() - first);
+    heights_above(points.subview(first, count), std::span(heights).first(count));
+    for (std::size_t i = 0; i < count; ++i) visit(first + i, heights[i]);
+  }
 }
 
 inline float GroundSurface::height(float x, float y) const {

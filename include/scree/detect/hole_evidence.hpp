@@ -34,8 +34,13 @@ public:
               const GroundSurface& surface);
 
 private:
+  static constexpr std::size_t kTile = 16;  // cells on a side
+
   void follow(const Eigen::Vector3f& origin, const Eigen::Vector3f& end,
               const GroundSurface& surface);
+  void find_tops(const GroundSurface& surface);
+  int steps_above(const Eigen::Vector3f& place, const Eigen::Vector3f& direction,
+                  const GroundSurface& surface) const;
   void follow_passing(const PassingBeam& beam, const GroundSurface& surface);
   void mark_lost(const Eigen::Vector3f& from, const Eigen::Vector3f& end,
                  const GroundSurface& surface);
@@ -47,6 +52,8 @@ private:
   FixedVector<float> into_, through_ground_;  // beams that ended below the ground, by cell
   FixedVector<std::uint16_t> beams_below_, lost_beams_;
   FixedVector<float> lowest_beam_;
+  FixedVector<float> tops_;  // by tile, metres
+  std::size_t tile_columns_ = 0;
   FixedVector<std::uint32_t> cells_, taken_by_;  // of the cluster, and the void beside it
   std::size_t seen_cells_ = 0;                   // the first of them: those with members
   std::uint32_t number_ = 0;

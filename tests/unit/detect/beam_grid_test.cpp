@@ -177,6 +177,17 @@ TEST_F(BeamGridTest, AFewCellsAreAsLooseAsThoseAroundThem) {
   EXPECT_FALSE(look_at(0.1F, 0, is_within(2))) << "a stone in a tuft";
 }
 
+TEST_F(BeamGridTest, WhatIsLooseCanBeFoundAlone) {
+  std::mt19937 random(9);
+  std::uniform_real_distribution<float> scatter(0, 0.08F);
+  for (BeamCount& beams : beams_) beams.scatter = beams.ended * scatter(random);
+  BeamGrid whole(kCells);
+  whole.build(cloud_, beams_, surface_, kLowest, kHighest);
+  beam_grid_.find_loose(cloud_, beams_, surface_, kLowest, kHighest);
+  EXPECT_TRUE(std::ranges::equal(beam_grid_.loose(), whole.loose()));
+  EXPECT_GT(std::ranges::count(whole.loose(), 1), 5);
+}
+
 TEST_F(BeamGridTest, AFewCellsThatStandAloneStayAsTheyAre) {
   for (std::size_t i = 0; i < cloud_.size(); ++i) {
     if (surface_.cell_at(cloud_.x[i], cloud_.y[i]) != middle()) cloud_.z[i] = 0;

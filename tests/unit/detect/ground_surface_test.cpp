@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <random>
 
 #include "detect/clouds.hpp"
@@ -149,6 +150,22 @@ TEST_P(GroundSurfaceTest, AnswersForCloudsOfNothingAndFarOutside) {
   }
   const GroundSurface one_place = surface_of(cloud);
   EXPECT_EQ(one_place.points_in(one_place.cell_at(5, 6)), 100U);
+}
+
+TEST_P(GroundSurfaceTest, HeightsAboveItAreThoseOfTheSinglePlaces) {
+  const GroundSurface surface = surface_of(seen([](float x, float) { return slope(x); }));
+  std::mt19937 random(4);
+  std::uniform_real_distribution<float> place(-6, 6);  // some beyond the raster
+  PointCloud points(1000);
+  while (points.size() < 1000) points.push_back(place(random), place(random), place(random), 0);
+  points.x[17] = std::numeric_limits<float>::quiet_NaN();
+  std::size_t next = 0;
+  surface.for_each_height(points, [&](std::size_t i, float height) {
+    ASSERT_EQ(i, next++);
+    if (i == 17) return;
+    ASSERT_NEAR(height, points.z[i] - surface.height(points.x[i], points.y[i]), 1e-5);
+  });
+  EXPECT_EQ(next, points.size());
 }
 
 TEST(GroundSurface, TheTrendGoesOnWithASlopeFromRingToRing) {

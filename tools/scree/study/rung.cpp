@@ -7,6 +7,7 @@
 #include "scree/detect/edge_method.hpp"
 #include "scree/detect/isolated_points.hpp"
 #include "scree/detect/label.hpp"
+#include "scree/detect/overhangs.hpp"
 #include "scree/detect/split_by_sign.hpp"
 #include "scree/detect/surface_method.hpp"
 
@@ -18,7 +19,6 @@ SurfaceRung::SurfaceRung(const DetectSettings& settings, const DetectorLimits& l
       chosen_(candidates),
       gradient_(gradient_of(settings.edges.kernel)),
       voxel_grid_(limits.points),
-      overhangs_(limits.points),
       points_(limits.points),
       sloped_(limits.points),
       surface_(limits.points, limits.ground_cells),
@@ -49,7 +49,7 @@ ClusteredPoints SurfaceRung::find(PointView cloud) {
 void SurfaceRung::take_in(PointView cloud) {
   const auto leaf_size = static_cast<float>(settings_.leaf_size);
   voxel_grid_.filter(cloud, leaf_size, reach_of_cells(leaf_size, points_.capacity(), 3), points_);
-  overhangs_.remove(points_, static_cast<float>(settings_.clearance), sloped_.cells);
+  remove_overhangs(points_, static_cast<float>(settings_.clearance), sloped_.cells);
 }
 
 void SurfaceRung::gather_candidates() {

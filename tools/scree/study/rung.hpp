@@ -7,7 +7,6 @@
 #include "scree/detect/clusters.hpp"
 #include "scree/detect/euclidean_clusters.hpp"
 #include "scree/detect/ground_surface.hpp"
-#include "scree/detect/overhangs.hpp"
 #include "scree/detect/sloped_cloud.hpp"
 #include "scree/detect/supervoxels.hpp"
 #include "scree/detect/voxel_grid.hpp"
@@ -36,7 +35,6 @@ private:
   Candidates chosen_;
   ElevationGradient gradient_;
   VoxelGrid voxel_grid_;
-  Overhangs overhangs_;
   PointCloud points_;
   SlopedCloud sloped_;
   GroundSurface surface_;
