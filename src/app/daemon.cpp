@@ -82,8 +82,11 @@ public:
 private:
   template <class Worker>
   std::thread start_thread(const char* name, Worker& worker) {
-    watchdog_.add(name, worker.loops());
-    std::thread thread([&worker] { worker.run(); });
+    ThreadPageFaults& page_faults = watchdog_.add(name, worker.loops());
+    std::thread thread([&worker, &page_faults] {
+      page_faults.open();
+      worker.run();
+    });
     pthread_setname_np(thread.native_handle(), name);  // as `top -H` shows it
     return thread;
   }
@@ -101,15 +104,14 @@ private:
     status.detector_loop_ns = detector_.last_loop_ns();
     status.sweeps_not_covered = detector_.not_covered();
     status.lists_dropped = detector_.lists_dropped();
-    status.queues = {queue_message("sweeps", sweeps_.fill()),
-                     queue_message("lists", lists_.fill())};
+    status.queues = {{"sweeps", sweeps_.fill()}, {"lists", lists_.fill()}};
     if (sensors_ == nullptr) return status;
     if (imu_) status.imu = imu_->status();
     if (encoder_) status.encoder = encoder_->status();
     status.samples_dropped = sensors_->dropped();
     status.samples_refused = sensors_->late();
-    status.queues.push_back(queue_message("imu", sensors_->imu_fill()));
-    status.queues.push_back(queue_message("encoder", sensors_->wheel_fill()));
+    status.queues.push_back({"imu", sensors_->imu_fill()});
+    status.queues.push_back({"encoder", sensors_->wheel_fill()});
     return status;
   }
 

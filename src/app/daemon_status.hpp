@@ -1,9 +1,10 @@
 #pragma once
 
+#include <boost/container/static_vector.hpp>
 #include <cstdint>
-#include <scree/queue_t.hpp>
-#include <vector>
+#include <string_view>
 
+#include "scree/core/queue_depth.hpp"
 #include "sensor_status.hpp"
 
 namespace scree {
@@ -19,7 +20,11 @@ struct DaemonStatus {
   std::int64_t detector_loop_ns = 0;  ///< see DetectorWorker::last_loop_ns()
   std::uint64_t sweeps_not_covered = 0, lists_dropped = 0;
 
-  std::vector<queue_t> queues;
+  struct Queue {
+    std::string_view name;  ///< in health
+    QueueFill fill;
+  };
+  boost::container::static_vector<Queue, 4> queues;
 };
 
 }  // namespace scree

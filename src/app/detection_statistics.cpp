@@ -1,7 +1,5 @@
 #include "detection_statistics.hpp"
 
-#include <utility>
-
 namespace scree {
 namespace {
 
@@ -31,7 +29,9 @@ void DetectionStatistics::fill(health_t& health) const {
   health.stages.clear();
   for (std::size_t i = 0; i < stages_.size(); ++i) {
     if (stages_[i].count() == 0) continue;
-    health.stages.push_back({std::string(kStageNames[i]), summary(stages_[i])});
+    health.stages.emplace_back();
+    health.stages.back().name = kStageNames[i];
+    health.stages.back().time = summary(stages_[i]);
   }
   health.stages_size = static_cast<std::int32_t>(health.stages.size());
   const auto count = [](std::uint64_t value) { return static_cast<std::int64_t>(value); };
@@ -44,11 +44,6 @@ void DetectionStatistics::fill(health_t& health) const {
   health.heading_resets = count(motion_.heading_resets);
   health.position_deviation = motion_.position_deviation;
   health.yaw_deviation = motion_.yaw_deviation;
-}
-
-queue_t queue_message(std::string name, const QueueFill& fill) {
-  const auto count = [](std::size_t value) { return static_cast<std::int32_t>(value); };
-  return {std::move(name), count(fill.waiting), count(fill.most), count(fill.capacity)};
 }
 
 }  // namespace scree

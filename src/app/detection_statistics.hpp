@@ -3,11 +3,9 @@
 #include <array>
 #include <cstdint>
 #include <scree/health_t.hpp>
-#include <string>
 
 #include "scree/app/detection_report.hpp"
 #include "scree/core/latency_histogram.hpp"
-#include "scree/core/queue_depth.hpp"
 
 namespace scree {
 
@@ -33,7 +31,5 @@ private:
   MotionReport motion_;
   SetupReport setup_;
 };
-
-queue_t queue_message(std::string name, const QueueFill& fill);
 
 }  // namespace scree

@@ -3,6 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <array>
+#include <tuple>
 
 #include "scree/core/ipv4.hpp"
 #include "scree/sync/sync_buffer.hpp"
@@ -24,8 +25,10 @@ std::string modes_of(const velodyne::LidarCounters& counters) {
 template <class Names, class Reasons, class Counts>
 void add_refused(const Names& names, const Reasons& reasons, const Counts& counts,
                  SensorStatus& status) {
+  constexpr std::size_t kOthers = 2;  // that a sensor adds
+  static_assert(std::tuple_size_v<Names> + kOthers <= SensorStatus::kMostReasons + 1);
   for (std::size_t i = 1; i < names.size(); ++i) {
-    status.refused.push_back({names[i], std::string(reasons[i]), counts[i]});
+    status.refused.push_back({names[i], reasons[i], counts[i]});
   }
 }
 
@@ -59,6 +62,7 @@ bool HealthWatch::update(std::int64_t now_ns, const LidarStatus& lidar, const Im
   log_.clear();
   const std::int8_t before = health.state;
   const std::string reason_before = health.reason;
+  name_senders(lidar);
   log_first_packets(lidar);
   log_pulses(lidar);
   bool has_changed = update_sensors(now_ns, lidar, imu, encoder, health);
@@ -113,17 +117,23 @@ bool HealthWatch::update_setup(std::int64_t now_ns, const LidarStatus& lidar,
   return true;
 }
 
-std::string HealthWatch::foreign_sender(const LidarStatus& lidar) const {
-  if (!settings_.lidar.sender.empty()) return "not from " + settings_.lidar.sender;
-  return fmt::format(
-      "from {}, while those from {} are taken: two sensors send to this port, choose "
-      "one with lidar.sender",
-      ipv4_text(lidar.senders.other()), ipv4_text(lidar.senders.taken()));
+/// Says anew from whom the lidar's packets come, where that has changed.
+void HealthWatch::name_senders(const LidarStatus& lidar) {
+  const std::array senders = {lidar.sender, lidar.senders.other(), lidar.senders.taken()};
+  if (senders == senders_) return;
+  senders_ = senders;
+  sender_ = lidar.sender == 0 ? "" : ipv4_text(lidar.sender);
+  foreign_ = !settings_.lidar.sender.empty()
+                 ? "not from " + settings_.lidar.sender
+                 : fmt::format(
+                       "from {}, while those from {} are taken: two sensors send to this port, "
+                       "choose one with lidar.sender",
+                       ipv4_text(lidar.senders.other()), ipv4_text(lidar.senders.taken()));
 }
 
 SensorStatus HealthWatch::status_of(const LidarStatus& lidar) const {
   SensorStatus status;
-  status.source = lidar.sender == 0 ? "" : ipv4_text(lidar.sender);
+  status.source = sender_;
   status.last_heard_ns = lidar.last_datagram_ns;
   status.last_message_ns = lidar.last_packet_ns;
   status.messages = lidar.lidar.accepted;
@@ -131,7 +141,7 @@ SensorStatus HealthWatch::status_of(const LidarStatus& lidar) const {
   status.kernel_drops = lidar.data_port.kernel_drops;
   add_refused(velodyne::kRefusalNames, velodyne::kRefusalReasons, lidar.lidar.refused, status);
   status.refused.push_back(
-      {"sender", foreign_sender(lidar), lidar.data_port.foreign + lidar.senders.left_out()});
+      {"sender", foreign_, lidar.data_port.foreign + lidar.senders.left_out()});
   status.clock = lidar.clock;
   return status;
 }

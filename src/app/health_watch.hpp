@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <scree/health_t.hpp>
 #include <string>
 #include <utility>
@@ -60,7 +61,7 @@ public:
   const LogLines& log() const { return log_; }
 
 private:
-  std::string foreign_sender(const LidarStatus& lidar) const;
+  void name_senders(const LidarStatus& lidar);
   SensorStatus status_of(const LidarStatus& lidar) const;
   SensorStatus status_of(const ImuStatus& imu) const;
   SensorStatus status_of(const EncoderStatus& encoder) const;
@@ -80,6 +81,8 @@ private:
 
   Settings settings_;
   std::string port_;  // "UDP port 2368"
+  std::optional<std::array<std::uint32_t, 3>> senders_;
+  std::string sender_, foreign_;  // in words: of these the first; the other two
   LogLines log_;
   SensorWatch lidar_, imu_, encoder_;
   velodyne::Firmware logged_firmware_ = velodyne::Firmware::undecided;

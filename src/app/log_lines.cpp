@@ -4,9 +4,8 @@
 
 namespace scree {
 
-void GrowthLog::update(std::int64_t now_ns, std::uint64_t count, std::string_view what,
-                       LogLines& log) {
-  if (count == logged_ || (logged_ != 0 && now_ns - logged_at_ns_ < kLogPauseNs)) return;
+void GrowthLog::add(std::int64_t now_ns, std::uint64_t count, std::string_view what,
+                    LogLines& log) {
   log.push_back(
       {true, fmt::format("{} ({} more, {} since the start)", what, count - logged_, count)});
   logged_ = count;

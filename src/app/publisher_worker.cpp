@@ -5,7 +5,6 @@
 #include <chrono>
 #include <utility>
 
-#include "page_faults.hpp"
 #include "scree/clock/clocks.hpp"
 #include "scree/core/nanoseconds.hpp"
 
@@ -15,6 +14,7 @@ namespace {
 // Health is checked often enough that what stops is published within 300 ms (see HealthWatch).
 constexpr std::chrono::milliseconds kCheckInterval{20};
 constexpr std::int64_t kHealthIntervalNs = kSecond;
+constexpr std::size_t kLongestSentence = 256;  // that takes no memory when it is said
 // For the last message, that the robot is blind from now on.
 constexpr std::chrono::seconds kEndOfLcm{1};
 
@@ -36,6 +36,7 @@ PublisherWorker::PublisherWorker(const Settings& settings, const RobotLines& lin
       watch_(settings, steady_ns()),
       last_health_ns_(steady_ns()) {
   health_.version = SCREE_VERSION;
+  sentence_.reserve(kLongestSentence);
   set_zone(settings.stop);
 }
 
@@ -140,26 +141,37 @@ void PublisherWorker::fill_counts() {
   health_.lists_dropped = count(status_.lists_dropped);
   health_.samples_dropped = count(status_.samples_dropped);
   health_.samples_refused = count(status_.samples_refused);
-  health_.queues = status_.queues;
+  health_.queues.resize(status_.queues.size());
+  for (std::size_t i = 0; i < health_.queues.size(); ++i) {
+    const auto& [name, fill] = status_.queues[i];
+    health_.queues[i].name = name;
+    health_.queues[i].waiting = static_cast<std::int32_t>(fill.waiting);
+    health_.queues[i].most = static_cast<std::int32_t>(fill.most);
+    health_.queues[i].capacity = static_cast<std::int32_t>(fill.capacity);
+  }
   health_.queues_size = static_cast<std::int32_t>(health_.queues.size());
 }
 
 void PublisherWorker::fill_computer() {
   health_.threads.clear();
-  for (const PageFaults& faults : page_faults()) {
-    if (!threads_.watches(faults.thread)) continue;
-    health_.threads.push_back({faults.thread, faults.minor, faults.major});
-  }
+  threads_.for_each_page_faults([this](std::string_view name, const PageFaults& faults) {
+    health_.threads.emplace_back();
+    health_.threads.back().name = name;
+    health_.threads.back().minor_faults = faults.minor;
+    health_.threads.back().major_faults = faults.major;
+  });
   health_.threads_size = static_cast<std::int32_t>(health_.threads.size());
   health_.processor_temperature = thermometer_.celsius();
 }
 
 void PublisherWorker::update_sentence() {
-  std::string sentence = health_.state == health_t::BLIND ? "blind: " + health_.reason
-                         : health_.stop != 0              ? "sees, and says stop"
-                                                          : "sees";
   const std::scoped_lock lock(sentence_mutex_);
-  sentence_ = std::move(sentence);
+  if (health_.state == health_t::BLIND) {
+    sentence_ = "blind: ";
+    sentence_ += health_.reason;
+  } else {
+    sentence_ = health_.stop != 0 ? "sees, and says stop" : "sees";
+  }
 }
 
 }  // namespace scree

@@ -27,11 +27,11 @@ void fill(const SensorStatus& status, sensor_health_t& health) {
   health.messages = signed_count(status.messages);
   health.lost = signed_count(status.lost);
   health.kernel_drops = signed_count(status.kernel_drops);
-  health.refused_reason.clear();
-  health.refused.clear();
-  for (const auto& refused : status.refused) {
-    health.refused_reason.emplace_back(refused.name);
-    health.refused.push_back(signed_count(refused.count));
+  health.refused_reason.resize(status.refused.size());
+  health.refused.resize(status.refused.size());
+  for (std::size_t i = 0; i < status.refused.size(); ++i) {
+    health.refused_reason[i] = status.refused[i].name;
+    health.refused[i] = signed_count(status.refused[i].count);
   }
   health.reasons = static_cast<std::int32_t>(health.refused.size());
   health.clock = static_cast<std::int8_t>(status.clock.state);
@@ -45,8 +45,7 @@ std::string_view SensorStatus::main_reason() const {
   const auto most =
       std::max_element(refused.begin(), refused.end(),
                        [](const Refused& a, const Refused& b) { return a.count < b.count; });
-  return most == refused.end() || most->count == 0 ? "no message in it"
-                                                   : std::string_view(most->reason);
+  return most == refused.end() || most->count == 0 ? "no message in it" : most->reason;
 }
 
 SensorWatch::SensorWatch(Terms terms, std::int64_t now_ns)
@@ -77,13 +76,15 @@ bool SensorWatch::update(std::int64_t now_ns, const SensorStatus& status, sensor
   }
   refused_.resize(status.refused.size());
   for (std::size_t i = 0; i < refused_.size(); ++i) {
-    refused_[i].update(now_ns, status.refused[i].count,
-                       fmt::format("{} refused: {}", terms_.messages, status.refused[i].reason),
-                       log);
+    const auto what = [&] {
+      return fmt::format("{} refused: {}", terms_.messages, status.refused[i].reason);
+    };
+    refused_[i].update(now_ns, status.refused[i].count, what, log);
   }
-  kernel_drops_.update(
-      now_ns, status.kernel_drops,
-      fmt::format("{} dropped by the kernel: the reader was too slow", terms_.messages), log);
+  const auto drops = [&] {
+    return fmt::format("{} dropped by the kernel: the reader was too slow", terms_.messages);
+  };
+  kernel_drops_.update(now_ns, status.kernel_drops, drops, log);
   return health.state != before || health.clock != clock_before;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <boost/container/static_vector.hpp>
+#include <cstddef>
 #include <cstdint>
 #include <scree/sensor_health_t.hpp>
 #include <string>
@@ -16,16 +18,18 @@ namespace scree {
 /// are since the start.
 struct SensorStatus {
   struct Refused {
-    std::string_view name;  ///< in health
-    std::string reason;     ///< for people
+    std::string_view name;    ///< in health
+    std::string_view reason;  ///< for people
     std::uint64_t count;
   };
 
-  std::string source;
+  static constexpr std::size_t kMostReasons = 24;
+
+  std::string_view source;
   std::int64_t last_heard_ns = 0;    ///< anything at all
   std::int64_t last_message_ns = 0;  ///< understood
   std::uint64_t messages = 0, lost = 0, kernel_drops = 0;
-  std::vector<Refused> refused;
+  boost::container::static_vector<Refused, kMostReasons> refused;
   ClockStatus clock;
 
   /// Why most was refused.

@@ -1,13 +1,18 @@
 #include "thermometer.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <limits>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace scree {
 namespace {
@@ -44,7 +49,9 @@ Thermometer::Thermometer(const fs::path& classes) {
   const auto add = [this](const fs::path& device, const char* name) {
     if (!is_processor(device / name)) return;
     for_each_in(device, [this](const fs::path& file) {
-      if (is_temperature(file.filename())) sensors_.push_back(file);
+      if (!is_temperature(file.filename())) return;
+      Descriptor sensor(open(file.c_str(), O_RDONLY | O_CLOEXEC));
+      if (sensor.is_open()) sensors_.push_back(std::move(sensor));
     });
   };
   for_each_in(classes / "thermal", [&](const fs::path& zone) { add(zone, "type"); });
@@ -53,10 +60,13 @@ Thermometer::Thermometer(const fs::path& classes) {
 
 double Thermometer::celsius() const {
   double hottest = std::numeric_limits<double>::quiet_NaN();
-  for (const fs::path& sensor : sensors_) {
-    std::ifstream file(sensor);
+  for (const Descriptor& sensor : sensors_) {
+    std::array<char, 32> text;  // NOLINT(cppcoreguidelines-pro-type-member-init): pread() fills it
+    const ssize_t size = pread(sensor.get(), text.data(), text.size(), 0);
     double thousandths = 0;
-    if (file >> thousandths) hottest = std::fmax(hottest, thousandths / 1000);
+    if (size <= 0) continue;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + size, thousandths);
+    if (error == std::errc()) hottest = std::fmax(hottest, thousandths / 1000);
   }
   return hottest;
 }

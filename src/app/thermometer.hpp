@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <vector>
 
+#include "scree/core/descriptor.hpp"
+
 namespace scree {
 
 /// Reads the temperature of the processor where the kernel says it: in a thermal zone (Raspberry
@@ -11,11 +13,12 @@ class Thermometer {
 public:
   explicit Thermometer(const std::filesystem::path& classes = "/sys/class");
 
-  /// The hottest sensor of the processor, degrees Celsius; not a number where there is none.
+  /// The hottest sensor of the processor, degrees Celsius; not a number where there is none. Takes
+  /// no memory.
   double celsius() const;
 
 private:
-  std::vector<std::filesystem::path> sensors_;  // each holds thousandths of a degree
+  std::vector<Descriptor> sensors_;  // each holds thousandths of a degree
 };
 
 }  // namespace scree

@@ -1,24 +1,34 @@
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
+#include <deque>
 #include <string_view>
-#include <vector>
 
 #include "loop_counter.hpp"
+#include "page_faults.hpp"
 
 namespace scree {
 
-/// Finds the thread whose loop has stopped. One thread may use it.
+/// Finds the thread whose loop has stopped, and knows the page faults of all. One thread may use
+/// it; page faults are for any, once all were added.
 class ThreadWatchdog {
 public:
   /// Keeps references to both.
-  void add(std::string_view thread, const LoopCounter& loops) {
-    watched_.push_back({thread, &loops, loops.count()});
+  /// @return what the thread shall open, once it runs
+  ThreadPageFaults& add(std::string_view thread, const LoopCounter& loops) {
+    Watched& watched = watched_.emplace_back();
+    watched.thread = thread;
+    watched.loops = &loops;
+    watched.last_count = loops.count();
+    return watched.page_faults;
   }
 
-  bool watches(std::string_view thread) const {
-    return std::ranges::any_of(watched_, [&](const Watched& one) { return one.thread == thread; });
+  /// Calls visit(name, PageFaults) for each thread whose page faults are known.
+  template <class Visit>
+  void for_each_page_faults(const Visit& visit) const {
+    for (const Watched& watched : watched_) {
+      if (const auto faults = watched.page_faults.read()) visit(watched.thread, *faults);
+    }
   }
 
   /// The first thread that has not looped since the last call that returned nothing; empty when all
@@ -34,10 +44,11 @@ public:
 private:
   struct Watched {
     std::string_view thread;
-    const LoopCounter* loops;
-    std::uint64_t last_count;
+    const LoopCounter* loops = nullptr;
+    std::uint64_t last_count = 0;
+    ThreadPageFaults page_faults;
   };
-  std::vector<Watched> watched_;
+  std::deque<Watched> watched_;  // they stay where they are
 };
 
 }  // namespace scree

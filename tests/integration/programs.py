@@ -49,6 +49,7 @@ class ProgramTest(unittest.TestCase):
 
     def write(self, name, text):
         path = self.path(name)
+        os.makedirs(os.path.dirname(path), exist_ok=True)
         with open(path, "w") as file:
             file.write(text)
         return path
@@ -91,7 +92,6 @@ class ProgramTest(unittest.TestCase):
     def keep_up(self):
         """Lets a program that a sanitizer watches see less, so that its lists are not late."""
         if SANITIZED:  # a drop-in of robot.toml
-            os.makedirs(self.path("robot.d"), exist_ok=True)
             self.write("robot.d/coarse.toml", COARSE)
 
     def write_config_here(self, capture, imu):

@@ -64,7 +64,7 @@ protected:
     status.detector_loop_ns = now_ns;
     status.lists_dropped = 3;
     status.samples_refused = 4;
-    status.queues = {queue_message("lists", lists_.fill())};
+    status.queues = {{"lists", lists_.fill()}};
     return status;
   }
   /// Pushes a list of a sweep that arrived some time ago.
