@@ -94,6 +94,7 @@ int ended(const std::function<scree::Result<void>()>& work) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  scree::make_stacks_small();
   const scree::Signals signals;  // asked to end while it starts, it ends as soon as it has
   CLI::App app("Finds obstacles in a lidar's data and publishes them on LCM");
   app.name("screed");

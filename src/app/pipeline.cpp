@@ -54,7 +54,8 @@ Pipeline::Pipeline(const Settings& settings, const Networks& networks)
       mapper_(std::make_unique<Mapper>(settings)),
       setup_(std::make_unique<SetupProbe>(settings)),
       map_detector_(settings.detect_map, settings.memory.for_map(), networks.map),
-      sweep_detector_(settings.detect_sweep, settings.memory.for_sweep(), networks.sweep),
+      sweep_detector_(std::in_place, settings.detect_sweep, settings.memory.for_sweep(),
+                      networks.sweep),
       tracker_(settings.track, static_cast<std::size_t>(settings.memory.obstacles), networks.judge),
       sweep_tracker_(TrackingSettings::for_sweep(),
                      static_cast<std::size_t>(settings.memory.obstacles)),
@@ -73,13 +74,13 @@ Pipeline::Pipeline(const Settings& settings, const Networks& networks)
 const ObstacleList& Pipeline::process(const Sweep& sweep) {
   timer_.start();
   sensors_->gather();
-  if (!uses_map_ && sensors_->has_motion()) {
-    uses_map_ = true;
+  if (!uses_map() && sensors_->has_motion()) {
+    sweep_detector_.reset();  // gives its memory back, once
     tracker_.set_next_id(sweep_tracker_.next_id());
   }
   list_.stamp_ns = sweep.end_ns;
   grid_ = nullptr;
-  if (uses_map_) {
+  if (uses_map()) {
     mapper_->add(sweep, *sensors_, timer_);
     if (mapper_->was_reset()) {
       tracker_.clear();
@@ -156,7 +157,7 @@ void Pipeline::detect_in_sweep(const Sweep& sweep) {
   mapper_->take_still(sweep);
   timer_.done(Stage::motion);
   const DeskewedSweep& still = mapper_->sweep();
-  sweep_detector_.detect(
+  sweep_detector_->detect(
       {.points = still.points, .origins = still.origins, .robot = Eigen::Vector2f::Zero()}, found_,
       timer_);
   sweep_tracker_.update(

@@ -6,6 +6,7 @@
 #include <sys/mman.h>
 
 #include <cerrno>
+#include <cstddef>
 #include <cstring>
 
 namespace scree {
@@ -15,6 +16,15 @@ namespace {
 constexpr int kPriority = 40;
 
 }  // namespace
+
+void make_stacks_small() {
+  constexpr std::size_t kStack = std::size_t{1} << 20U;
+  pthread_attr_t attributes;
+  if (pthread_attr_init(&attributes) != 0) return;
+  pthread_attr_setstacksize(&attributes, kStack);
+  pthread_setattr_default_np(&attributes);
+  pthread_attr_destroy(&attributes);
+}
 
 void run_first(std::initializer_list<std::thread*> threads) {
   const sched_param priority{.sched_priority = kPriority};

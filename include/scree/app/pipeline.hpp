@@ -58,19 +58,19 @@ public:
   /// How long the stages of the last list took; none without time_stages().
   const StageTimes& stage_times() const { return timer_.times(); }
   /// What found the obstacles of the last list, and in which points.
-  const Detector& detector() const { return uses_map_ ? map_detector_ : sweep_detector_; }
+  const Detector& detector() const { return sweep_detector_ ? *sweep_detector_ : map_detector_; }
   const PointCloud& ground() const {
-    return uses_map_ ? mapper_->map().cloud() : mapper_->sweep().points;
+    return uses_map() ? mapper_->map().cloud() : mapper_->sweep().points;
   }
   const Mapper& mapper() const { return *mapper_; }
   /// The settings that the sensors contradict.
   const SetupReport& setup() const { return setup_report_; }
-  const Tracker& tracker() const { return uses_map_ ? tracker_ : sweep_tracker_; }
+  const Tracker& tracker() const { return uses_map() ? tracker_ : sweep_tracker_; }
   /// What the trackers had no room for, standing or moving.
   std::uint64_t tracks_dropped() const {
     return tracker().dropped() + moving_tracker_.dropped() + moving_boxes_.dropped();
   }
-  bool uses_map() const { return uses_map_; }
+  bool uses_map() const { return !sweep_detector_; }
   /// What the detector counted in the last sweep; points that did not get to it are dropped ones.
   StageCounts counts() const;
 
@@ -85,7 +85,8 @@ private:
   std::unique_ptr<Mapper> mapper_;
   std::unique_ptr<SetupProbe> setup_;
   SetupReport setup_report_;
-  Detector map_detector_, sweep_detector_;
+  Detector map_detector_;
+  std::optional<Detector> sweep_detector_;  // until the robot's motion is known
   Tracker tracker_, sweep_tracker_;
   MovingTracker moving_tracker_;
   MovingBoxes moving_boxes_;
@@ -94,7 +95,7 @@ private:
   std::optional<GridMaker> grid_maker_;
   const ObstacleGrid* grid_ = nullptr;
   StageTimer timer_;
-  bool uses_map_ = false, has_looked_ = false;
+  bool has_looked_ = false;
 };
 
 /// The weights in a file that a setting names.
