@@ -46,8 +46,7 @@ enum Feature : std::size_t {
   kFeatures
 };
 inline constexpr std::size_t kPaperFeatures = 5;
-/// What the shipped network for clouds takes; the others tell tufts and uneven ground in sparser
-/// maps.
+/// Those that few clouds are enough to learn from; the others tell tufts and uneven ground.
 inline constexpr std::size_t kCloudFeatures = cell_points;
 using Features = std::array<float, kFeatures>;
 
