@@ -12,6 +12,14 @@ SCREE = sys.argv[1]
 
 
 class StudyTest(ProgramTest):
+    def test_settings_without_a_robot_are_studied_on_the_scenes_own(self):
+        config, out = self.write("scree.toml", ""), self.path("out")
+        arguments = ["study", "detection", "--out", out, "--seeds", "1", "--points", "100000"]
+        said = self.scree(*arguments, "--config", config).stdout
+        sweeps = said[said.index("single sweeps") :]
+        found, missed = (int(sweeps.split("\nall ")[1].split()[i]) for i in (0, 2))
+        self.assertGreater(found + missed, 3, "the lidar has seen obstacles")
+
     def scree(self, *arguments, code=0):
         return self.done(SCREE, *arguments, code=code)
 

@@ -75,6 +75,10 @@ void run(const StudyOptions& options) {
     const auto loaded = load_settings(options.config);
     if (!loaded) throw Failure(loaded.error().message);
     task.settings = *loaded;
+    // A file of settings alone has no robot; a lidar on the ground would see none of it.
+    if (loaded->lidar.translation.isZero()) {
+      task.settings.lidar.translation = scene_lidar().translation;
+    }
     task.config_file = options.config;
   }
   std::error_code failed;
