@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <memory>
 
 #include "bench/pcl_chain.hpp"
+#include "scree/core/pcl_cloud.hpp"
 #include "scree/detect/cell.hpp"
 #include "scree/detect/detector.hpp"
 #include "simulator/cloud.hpp"
@@ -105,10 +105,7 @@ void plain_chain_of_pcl(benchmark::State& state) {
   FixedVector<Obstacle> obstacles(1024), ours(1024);
   detector.detect(cloud(), ours);
   bench::PclChain chain(plain_settings(), max_points(), paper_network());
-  const auto input = std::make_shared<pcl::PointCloud<pcl::PointXYZI>>();
-  for (std::size_t i = 0; i < cloud().size(); ++i) {
-    input->push_back({cloud().x[i], cloud().y[i], cloud().z[i], cloud().reflectivity[i]});
-  }
+  const auto input = to_pcl(cloud());
   for (auto _ : state) chain.detect(input, obstacles);
   state.counters["obstacles"] = static_cast<double>(obstacles.size());
   state.counters["as_ours"] = static_cast<double>(agreeing(obstacles, ours));

@@ -1,6 +1,10 @@
 #pragma once
 
 #include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+
+#include <cstddef>
+#include <memory>
 
 #include "scree/core/point_cloud.hpp"
 
@@ -19,6 +23,16 @@ PointCloud from_pcl(const pcl::PointCloud<Point>& cloud) {
     }
   }
   return points;
+}
+
+/// The other way: the reflectivity becomes `intensity`.
+inline pcl::PointCloud<pcl::PointXYZI>::Ptr to_pcl(PointView cloud) {
+  auto result = std::make_shared<pcl::PointCloud<pcl::PointXYZI>>();
+  result->reserve(cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    result->push_back({cloud.x[i], cloud.y[i], cloud.z[i], cloud.reflectivity[i]});
+  }
+  return result;
 }
 
 }  // namespace scree

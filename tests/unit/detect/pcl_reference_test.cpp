@@ -25,14 +25,6 @@ namespace {
 
 using PclCloud = pcl::PointCloud<pcl::PointXYZI>;
 
-PclCloud::Ptr to_pcl(PointView cloud) {
-  auto result = std::make_shared<PclCloud>();
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    result->push_back({cloud.x[i], cloud.y[i], cloud.z[i], cloud.reflectivity[i]});
-  }
-  return result;
-}
-
 /// A real cloud of an off-road robot, or nothing where the recordings are absent.
 std::optional<PointCloud> recording(const std::string& name) {
   const std::string file = std::string(SCREE_SHARED_DATA) + "/clouds/" + name;
