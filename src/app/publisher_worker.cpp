@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -76,8 +77,10 @@ std::string PublisherWorker::sentence() {
 
 void PublisherWorker::publish(TimedObstacleList& timed) {
   outputs_.update(timed.list, steady_ns());
+  // What was held up on its way is as old as the sensor says.
+  const std::int64_t data_ns = std::min(timed.list.stamp_ns, timed.arrival_ns);
   timed.list.stamp_ns = clock_.to_real(timed.list.stamp_ns, read_clocks());
-  lcm_->put(timed.list, timed.arrival_ns);
+  lcm_->put(timed.list, data_ns);
   statistics_.record(steady_ns() - timed.arrival_ns, timed.detector_ns, timed.report);
   if (timed.grid.empty()) return;
   timed.grid.stamp_ns = timed.list.stamp_ns;

@@ -120,6 +120,7 @@ class Player:
                 events.append((stamp, lambda frame=frame: can.send(frame)))
         self.events = sorted(events, key=lambda event: event[0])
         self.mti, self.loop = mti, loop
+        self.late = 0  # seconds by which all is held up on its way
         self.stopped = threading.Event()
         self.thread = threading.Thread(target=self._play, daemon=True)
         self.thread.start()
@@ -143,7 +144,7 @@ class Player:
             start, first = time.monotonic(), self.events[0][0]
             self.later_ns = time.time_ns() - first
             for stamp, send in self.events:
-                early = start + (stamp - first) * 1e-9 - time.monotonic()
+                early = start + self.late + (stamp - first) * 1e-9 - time.monotonic()
                 if early > 0:
                     time.sleep(early)
                 if self.stopped.is_set():

@@ -285,7 +285,10 @@ void add_replay(CLI::App& app) {
       ->add_option("--can", options->can,
                    "play the encoder on this CAN interface, the daemon's encoder.interface")
       ->type_name("INTERFACE");
-  command->add_option("--rate", options->rate, "times real time; 0 or max: as fast as possible [1]")
+  command
+      ->add_option("--rate", options->rate,
+                   "times real time; 0 or max: as fast as possible; below 1 the daemon finds "
+                   "its data old, and says BLIND [1]")
       ->type_name("X");
   options->range.add_to(*command);
   command->add_flag("--loop", options->loop, "begin anew at the end, until interrupted");
