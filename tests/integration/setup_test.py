@@ -4,6 +4,7 @@ import json
 import os
 import re
 import sys
+import tomllib
 
 from programs import ProgramTest, main
 
@@ -80,6 +81,58 @@ class SetupTest(ProgramTest):
         for scene, seed, more in drives:
             capture = self.simulated(scene, "--scene", scene, "--seed", seed, *more)
             self.assertEqual(self.said(capture), [], scene)
+
+    def values(self, capture, *arguments):
+        """What `scree calibrate` says of each value, by "key part"."""
+        said = json.loads(self.done(SCREE, "calibrate", capture, "--json", *arguments).stdout)
+        return {f"{each['key']} {each['part']}".strip(): each for each in said}
+
+    def test_a_minutes_drive_calibrates_a_robot_that_is_set_up_wrong(self):
+        capture = self.path("turning")
+        drive = ["--scene", "mixed", "--seed", "70005", "--seconds", "40", "--turns"]
+        self.done(SCREE, "simulate", capture, *drive)
+        with open(os.path.join(capture, "scree.toml")) as file:
+            robot = tomllib.loads(file.read())
+        config = self.changed(
+            capture,
+            lidar_translation=lambda v: [0, v[1], 0],
+            lidar_rpy_deg=lambda v: [v[0] + 8, v[1] - 10, v[2] + 9],
+            imu_rpy_deg=lambda v: [v[0], v[1], v[2] + 170],
+            encoder_scale=lambda v: -2 * v,
+        )
+        drop_in, picture = self.path("changed.d/mounts.toml"), self.path("drive.png")
+        os.mkdir(self.path("changed.d"))
+        found = self.values(capture, "--config", config, "--out", drop_in, "--picture", picture)
+        true = {
+            "encoder.scale": (robot["encoder"]["scale"], 0.015 * robot["encoder"]["scale"]),
+            "lidar.translation x": (robot["lidar"]["translation"][0], 0.05),
+            "lidar.translation z": (robot["lidar"]["translation"][2], 0.02),
+        }
+        for table, off in [("lidar", 0.5), ("imu", 1.5)]:
+            for part, angle in zip(["roll", "pitch", "yaw"], robot[table]["rpy_deg"]):
+                true[f"{table}.rpy_deg {part}"] = (angle, off)
+        for name, (value, off) in true.items():
+            each = found[name]
+            self.assertIn("found", each, name)
+            away = each["found"] - value
+            away = (away + 180) % 360 - 180 if "rpy" in name else away
+            self.assertLess(abs(away), off, name)
+            self.assertLess(abs(away), 4 * each["deviation"], name)
+        self.assertTrue(found["encoder.scale"]["contradicts"])
+        with open(picture, "rb") as file:
+            self.assertEqual(file.read(4), b"\x89PNG")
+
+        # With the drop-in it drives as set.
+        again = self.values(capture, "--config", config)
+        self.assertEqual([name for name, each in again.items() if each.get("contradicts")], [])
+        self.assertEqual(self.said(capture, config), [])
+        failed = self.run_to_end(SCREE, "calibrate", capture, "--config", config, "--out", drop_in)
+        self.assert_fails(failed, "mounts.toml", "--force")
+
+    def test_a_robot_that_stands_shows_nothing_of_its_mounts(self):
+        capture = self.simulated("standing", "--at-rest")
+        failed = self.run_to_end(SCREE, "calibrate", capture)
+        self.assert_fails(failed, "shows nothing of the mounts")
 
 
 if __name__ == "__main__":

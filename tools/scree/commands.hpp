@@ -45,6 +45,7 @@ void add_watch(CLI::App& app);
 void add_view(CLI::App& app);
 void add_status(CLI::App& app);
 void add_mark(CLI::App& app);
+void add_calibrate(CLI::App& app);
 void add_doctor(CLI::App& app);
 void add_top(CLI::App& app);
 void add_config(CLI::App& app);

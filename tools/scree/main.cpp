@@ -28,6 +28,7 @@ void add_all(CLI::App& app) {
   scree::cli::add_view(app);
   scree::cli::add_status(app);
   scree::cli::add_mark(app);
+  scree::cli::add_calibrate(app);
   scree::cli::add_doctor(app);
   scree::cli::add_top(app);
   scree::cli::add_bench(app);
