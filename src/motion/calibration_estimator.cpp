@@ -33,7 +33,7 @@ Eigen::Matrix3d rotation_of(const Values& values, Calibrated roll) {
 double median_size(const Eigen::VectorXd& values) {
   std::vector<double> sizes(values.begin(), values.end());
   for (double& size : sizes) size = std::abs(size);
-  return median_of(sizes);
+  return median(sizes);
 }
 
 /// The shift of a time, seconds, with the least cost; between steps by a parabola. Not shown where
@@ -146,8 +146,8 @@ void CalibrationEstimator::estimate_lidar(const Windows& windows, const std::vec
     }
     heights.push_back(each.plane.height);
   }
-  const Eigen::Vector3d up(median_of(normals[0]), median_of(normals[1]), median_of(normals[2]));
-  const double height = median_of(heights);
+  const Eigen::Vector3d up(median(normals[0]), median(normals[1]), median(normals[2]));
+  const double height = median(heights);
   Eigen::Matrix3d rotation = set_.lidar.mount().rotation.toRotationMatrix();
   Eigen::Vector3d arm(set_.lidar.translation.x(), set_.lidar.translation.y(), height);
   double x = kNotShown;

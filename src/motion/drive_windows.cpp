@@ -1,10 +1,10 @@
 #include "drive_windows.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "scree/core/nanoseconds.hpp"
 #include "scree/core/rotation.hpp"
+#include "scree/motion/setup_window.hpp"
 
 namespace scree {
 namespace {
@@ -23,13 +23,9 @@ auto between(const std::vector<Sample>& samples, std::int64_t t_ns, const Betwee
   return between_two(*before, *after, share);
 }
 
-/// However they are mounted, lidar and IMU turn by the same angle; else registration lost its way.
 bool is_plausible(const DriveRecord& drive, const DriveWindow& window) {
-  constexpr double kNoise = 0.015, kShare = 0.15;  // rad
   const auto by_imu = imu_turn(drive, window.begin_ns, window.end_ns);
-  if (!by_imu) return true;
-  const double turned = window.turn.norm(), imu_turned = by_imu->norm();
-  return std::abs(turned - imu_turned) <= kNoise + kShare * std::max(turned, imu_turned);
+  return !by_imu || turn_alike(window.turn, *by_imu);
 }
 
 }  // namespace

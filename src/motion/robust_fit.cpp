@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
 namespace scree {
 
-double median_of(std::vector<double>& values) {
+double median(std::span<double> values) {
+  if (values.empty()) return 0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
@@ -17,7 +19,7 @@ Eigen::VectorXd cauchy_weights(const Eigen::VectorXd& residuals) {
   constexpr double kWidth = 1.5, kLeastWidth = 1e-6;
   std::vector<double> sizes(residuals.begin(), residuals.end());
   for (double& size : sizes) size = std::abs(size);
-  const double width = std::max(kWidth * median_of(sizes), kLeastWidth);
+  const double width = std::max(kWidth * median(sizes), kLeastWidth);
   return (1 + (residuals / width).array().square()).inverse();
 }
 

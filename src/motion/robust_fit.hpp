@@ -1,12 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <vector>
+#include <span>
 
 namespace scree {
 
-/// Reorders them. @pre some
-double median_of(std::vector<double>& values);
+/// Reorders them. Zero where there are none.
+double median(std::span<double> values);
 
 /// Weights in (0, 1] of residuals by the Cauchy function, whose width is that of most of them.
 Eigen::VectorXd cauchy_weights(const Eigen::VectorXd& residuals);

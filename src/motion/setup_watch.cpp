@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "robust_fit.hpp"
 #include "scree/core/pose.hpp"
 #include "setup_angles.hpp"
 
@@ -23,15 +24,13 @@ constexpr int kTravelWindows = 5, kBelowWindows = 3, kAroundWindows = 5;
 constexpr double kLeastTravel = 1;   // metres
 constexpr double kLeastAlike = 0.7;  // of the windows: a mount is askew by the same angle always
 
-/// Reorders them. Zero where there are none.
-double median(std::span<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 }  // namespace
+
+bool turn_alike(const Eigen::Vector3d& lidar, const Eigen::Vector3d& imu) {
+  constexpr double kNoise = 0.015, kShare = 0.15;  // rad
+  const double turned = lidar.norm(), imu_turned = imu.norm();
+  return std::abs(turned - imu_turned) <= kNoise + kShare * std::max(turned, imu_turned);
+}
 
 SetupWatch::SetupWatch(const Settings& settings)
     : lidar_mount_(settings.lidar.mount()),

@@ -62,6 +62,11 @@ void LidarOdometry::add_surfels() {
   }
 }
 
+Eigen::Vector3d LidarOdometry::above_middle(const Pose& lidar_mount) {
+  return lidar_mount.rotation.conjugate() *
+         Eigen::Vector3d(-lidar_mount.translation.x(), -lidar_mount.translation.y(), 0);
+}
+
 std::optional<GroundPlane> LidarOdometry::ground_below(const Eigen::Vector3d& place) {
   constexpr double kHalfWidth = 0.4, kApart = 0.2;  // metres: the robot's, where no rocks are
   constexpr double kDeepest = 2.5;                  // metres

@@ -1,8 +1,5 @@
 #include "scree/terrain/setup_probe.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "scree/core/gravity.hpp"
 #include "scree/core/rotation.hpp"
 #include "scree/motion/specific_force.hpp"
@@ -10,12 +7,10 @@
 namespace scree {
 
 SetupProbe::SetupProbe(const Settings& settings)
-    : odometry_(static_cast<std::size_t>(settings.memory.sweep_points),
+    : middle_(LidarOdometry::above_middle(settings.lidar.mount())),
+      odometry_(static_cast<std::size_t>(settings.memory.sweep_points),
                 OwnReturns(settings.robot.body, settings.lidar.mount())),
       watch_(settings) {
-  const Pose mount = settings.lidar.mount();
-  middle_ = mount.rotation.conjugate() *
-            Eigen::Vector3d(-mount.translation.x(), -mount.translation.y(), 0);
   begin_window();
 }
 
@@ -53,14 +48,7 @@ void SetupProbe::add_step(const SyncBuffer& sensors) {
 }
 
 void SetupProbe::end_window(const SyncBuffer& sensors) {
-  // However they are mounted, lidar and IMU turn by the same angle. Else registration has lost its
-  // way.
-  constexpr double kNoise = 0.015, kShare = 0.15;  // rad
-  const double turned = window_.turn.norm(), imu_turned = window_.imu_turn.norm();
-  if (window_.has_imu &&
-      std::abs(turned - imu_turned) > kNoise + kShare * std::max(turned, imu_turned)) {
-    window_.is_bound = false;
-  }
+  if (window_.has_imu && !turn_alike(window_.turn, window_.imu_turn)) window_.is_bound = false;
   window_.around = fit_ground_around(odometry_.sweep().points);
   if (window_.is_bound) window_.below = odometry_.ground_below(middle_);
   const auto attitude = sensors.attitude_at(odometry_.end_ns());

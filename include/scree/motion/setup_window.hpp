@@ -26,4 +26,8 @@ struct SetupWindow {
   double wheel = 0;  ///< metres that it rolled
 };
 
+/// However they are mounted, lidar and IMU turn by the same angle. Else registration has lost its
+/// way. Rotation vectors, rad.
+bool turn_alike(const Eigen::Vector3d& lidar, const Eigen::Vector3d& imu);
+
 }  // namespace scree

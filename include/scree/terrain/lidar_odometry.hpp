@@ -33,6 +33,8 @@ public:
   /// was seen.
   /// @param place in the lidar's frame; above the ground, near the robot's middle
   std::optional<GroundPlane> ground_below(const Eigen::Vector3d& place);
+  /// The place above the robot's middle, at the lidar's height, in `lidar`.
+  static Eigen::Vector3d above_middle(const Pose& lidar_mount);
   const DeskewedSweep& sweep() const { return sweep_; }
 
 private:

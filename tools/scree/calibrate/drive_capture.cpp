@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <optional>
 
 #include "commands.hpp"
 #include "detection/waiting_sweeps.hpp"
@@ -22,9 +21,7 @@ class Recorder {
 public:
   Recorder(const Settings& settings, const SyncBuffer& sensors)
       : sensors_(sensors),
-        middle_(
-            settings.lidar.mount().rotation.conjugate() *
-            Eigen::Vector3d(-settings.lidar.translation.x(), -settings.lidar.translation.y(), 0)),
+        middle_(LidarOdometry::above_middle(settings.lidar.mount())),
         odometry_(static_cast<std::size_t>(settings.memory.sweep_points),
                   OwnReturns(settings.robot.body, settings.lidar.mount())) {}
 
