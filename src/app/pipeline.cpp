@@ -53,6 +53,7 @@ Pipeline::Pipeline(const Settings& settings, const Networks& networks)
     : sensors_(std::make_unique<SyncBuffer>(settings.imu.mount().rotation)),
       mapper_(std::make_unique<Mapper>(settings)),
       setup_(std::make_unique<SetupProbe>(settings)),
+      stand_in_(std::make_unique<StandInMotion>(settings)),
       map_detector_(settings.detect_map, settings.memory.for_map(), networks.map),
       sweep_detector_(std::in_place, settings.detect_sweep, settings.memory.for_sweep(),
                       networks.sweep),
@@ -74,34 +75,65 @@ Pipeline::Pipeline(const Settings& settings, const Networks& networks)
 const ObstacleList& Pipeline::process(const Sweep& sweep) {
   timer_.start();
   sensors_->gather();
-  if (!uses_map() && sensors_->has_motion()) {
-    sweep_detector_.reset();  // gives its memory back, once
-    tracker_.set_next_id(sweep_tracker_.next_id());
-  }
+  follow_motion(sweep);
   list_.stamp_ns = sweep.end_ns;
   grid_ = nullptr;
-  if (uses_map()) {
-    mapper_->add(sweep, *sensors_, timer_);
-    if (mapper_->was_reset()) {
-      tracker_.clear();
-      moving_tracker_.clear();
-    }
+  if (motion_ != nullptr) {
+    mapper_->add(sweep, *motion_, timer_);
+    if (mapper_->was_reset()) clear_tracks();
+  } else {
+    mapper_->take_still(sweep);
+    timer_.done(Stage::motion);
+  }
+  // A map that has just begun has confirmed nothing yet.
+  uses_map_ = motion_ != nullptr && (!sweep_detector_ || !mapper_->map().cloud().empty());
+  if (uses_map_) {
     detect_in_map();
   } else {
-    detect_in_sweep(sweep);
+    detect_in_sweep(motion_ != nullptr ? mapper_->pose() : Pose());
   }
-  check_setup(sweep);
+  report_setup();
   has_looked_ = sweep.is_whole && !ground().empty();
   return list_;
 }
 
-void Pipeline::check_setup(const Sweep& sweep) {
-  setup_->add(sweep, *sensors_);
+/// Decides whose motion the map goes by, and begins it anew where that does not follow.
+void Pipeline::follow_motion(const Sweep& sweep) {
+  const bool follows = setup_->add(sweep, *sensors_);
+  stand_in_->add(setup_->odometry(), follows, *sensors_);
+  timer_.done(Stage::setup);
+  const SyncBuffer* const before = std::exchange(motion_, choose_motion());
+  if (sensors_->has_motion()) sweep_detector_.reset();  // gives its memory back, once
+  const bool goes_on = motion_ == before && (follows || sensors_->has_motion());
+  if (motion_ != nullptr && has_map_ && !goes_on) {
+    mapper_->restart();
+    clear_tracks();
+  } else if (!sensors_->has_motion() && stand_in_->settles()) {
+    mapper_->forget_ground();
+    clear_tracks();
+  }
+  has_map_ = has_map_ || motion_ != nullptr;
+}
+
+/// Null where nothing tells how the robot moves.
+const SyncBuffer* Pipeline::choose_motion() const {
+  const bool stands_in = mapper_->registers() && sensors_->imu().empty();
+  if (sensors_->has_motion() && !stands_in) return sensors_.get();
+  if (stands_in && (sensors_->has_motion() || stand_in_->is_bound())) return &stand_in_->samples();
+  return nullptr;
+}
+
+void Pipeline::clear_tracks() {
+  tracker_.clear();
+  moving_tracker_.clear();
+}
+
+void Pipeline::report_setup() {
   setup_report_ = setup_->report();
+  if (motion_ == nullptr) setup_report_.add({.fault = SetupFault::motion_unknown});
   for (const BodyBox& box : mapper_->own_returns().found()) {
     setup_report_.add({.fault = SetupFault::robot_body, .set = box.low, .high = box.high});
   }
-  timer_.done(Stage::setup);
 }
 
 void Pipeline::detect_in_map() {
@@ -153,16 +185,19 @@ float Pipeline::ground_at(const Eigen::Vector3d& place) const {
   return method->ground().height(in_cloud.x(), in_cloud.y()) + static_cast<float>(origin.z());
 }
 
-void Pipeline::detect_in_sweep(const Sweep& sweep) {
-  mapper_->take_still(sweep);
-  timer_.done(Stage::motion);
+/// @param pose of `base` in `odom`
+void Pipeline::detect_in_sweep(const Pose& pose) {
   const DeskewedSweep& still = mapper_->sweep();
   sweep_detector_->detect(
       {.points = still.points, .origins = still.origins, .robot = Eigen::Vector2f::Zero()}, found_,
       timer_);
+  sweep_tracker_.set_next_id(tracker_.next_id());
   sweep_tracker_.update(
       list_.stamp_ns, Eigen::Vector3d::Zero(), {found_.data(), found_.size()},
       [](const Eigen::Vector3d&) { return Occupancy::unknown; }, list_.obstacles);
+  tracker_.set_next_id(sweep_tracker_.next_id());
+  list_.pose = pose;
+  for (Obstacle& obstacle : list_.obstacles) move_into_parent(pose, obstacle);
   timer_.done(Stage::tracking);
 }
 

@@ -66,7 +66,7 @@ std::string_view head_of(std::string_view file) {
     return "# Profile for driving: the map that grows, detection in it, and tracks.\n";
   }
   if (file == "sweep.toml") {
-    return "# Profile for single sweeps, as long as neither IMU nor encoder has said anything.\n";
+    return "# Profile for single sweeps, where nothing tells how the robot moves.\n";
   }
   return {};
 }

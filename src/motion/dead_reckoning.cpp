@@ -91,6 +91,15 @@ void DeadReckoning::write(SweepTrajectory& trajectory, std::int64_t step_ns) con
   }
 }
 
+void DeadReckoning::restart() {
+  state_ = begin_ = {};
+  states_.clear();
+  now_ns_ = 0;
+  wheel_ = distance_ = speed_ = 0;
+  rate_.setZero();
+  started_ = false;
+}
+
 MotionStep DeadReckoning::advance(const SyncBuffer& sensors, std::int64_t begin_ns,
                                   std::int64_t end_ns, SweepTrajectory& trajectory,
                                   bool trusts_wheel) {
@@ -105,6 +114,7 @@ MotionStep DeadReckoning::advance(const SyncBuffer& sensors, std::int64_t begin_
   step.distance = distance_;
   step.knows_attitude = state_.knows_attitude;
   step.knows_distance = state_.knows_distance;
+  step.attitude_walk = sensors.attitude_walk();
   write(trajectory, step_ns);
   return step;
 }

@@ -46,6 +46,7 @@ void deskew(const Sweep& sweep, const LidarSettings& lidar, const SweepTrajector
       continue;
     }
     out.origins.push_back(to_base.translation);
+    out.time_ns.push_back(sweep.time_ns[i]);
     out.is_suspect.push_back(own.is_suspect() ? 1 : 0);
     scatter.add(sweep.laser[i], in_lidar, out.scatter, out.is_isolated);
   }

@@ -140,6 +140,7 @@ void PoseFilter::add_noise(const MotionStep& step, double drift_seconds, double 
   const double seconds = step.seconds();
   if (step.knows_attitude) {
     const double tilt = square(kTilt) * (1 - square(tilt_kept));
+    covariance_.diagonal().segment<3>(3).array() += square(step.attitude_walk) * seconds;
     covariance_(3, 3) += tilt;
     covariance_(4, 4) += tilt;
     covariance_(5, 5) += square(kYawWalk) * drift_seconds;

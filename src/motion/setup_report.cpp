@@ -60,6 +60,9 @@ std::string sentence(const SetupFinding& finding) {
                          vector_text(finding.set, 100));
     case SetupFault::lidar_unset:
       return "lidar.translation and lidar.rpy_deg are as delivered: set where the lidar sits";
+    case SetupFault::motion_unknown:
+      return "no IMU and no encoder is heard, and the ground does not show the lidar how it moves: "
+             "each sweep is taken by itself";
     case SetupFault::robot_body:
       return fmt::format(
           "returns keep their place on the robot and are left out: add the box [{}, {}] to "

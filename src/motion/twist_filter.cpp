@@ -25,6 +25,8 @@ void TwistFilter::predict(double seconds) {
   const Eigen::Quaterniond turn = exponential(rate_ * seconds);
   pose_.rotation = (turn * pose_.rotation).normalized();
   velocity_ = turn * velocity_;
+  predicted_velocity_ = velocity_;
+  predicted_rate_ = rate_;
 
   Covariance transition = Covariance::Identity();
   transition.block<6, 6>(0, 6).diagonal().setConstant(seconds);
@@ -46,14 +48,14 @@ void TwistFilter::begin_update() {
   update_.begin(covariance_);
 }
 
-double TwistFilter::update(const PoseEvidence& evidence) {
+double TwistFilter::update(const TwistEvidence& evidence) {
   const auto correction = update_.round(evidence);
   if (!correction) return 0;
   apply(*correction);
   return correction->head<6>().norm();
 }
 
-void TwistFilter::end_update(const PoseEvidence& evidence) {
+void TwistFilter::end_update(const TwistEvidence& evidence) {
   update_.end(evidence, covariance_);
 }
 
@@ -62,6 +64,22 @@ void TwistFilter::apply(const Errors& error) {
   pose_.rotation = (exponential(error.segment<3>(3)) * pose_.rotation).normalized();
   velocity_ += error.segment<3>(6);
   rate_ += error.tail<3>();
+}
+
+Eigen::Vector3d TwistFilter::place(const Eigen::Vector3d& point, double before_s) const {
+  const Eigen::Vector3d rotated = pose_.rotation * point;
+  const Eigen::Vector3d velocity(0, 0, velocity_.z() - predicted_velocity_.z());
+  const Eigen::Vector3d rate(rate_.x() - predicted_rate_.x(), rate_.y() - predicted_rate_.y(), 0);
+  return pose_.translation + rotated - before_s * (velocity + rate.cross(rotated));
+}
+
+TwistFilter::Errors TwistFilter::jacobian(const Eigen::Vector3d& point, double before_s,
+                                          const Eigen::Vector3d& direction) const {
+  Eigen::Matrix<double, 6, 1> of_pose;
+  of_pose << direction, (pose_.rotation * point).cross(direction);
+  Errors jacobian;
+  jacobian << of_pose, 0, 0, -before_s * of_pose.segment<3>(2), 0;
+  return jacobian;
 }
 
 void TwistFilter::write(SweepTrajectory& trajectory, double seconds) const {

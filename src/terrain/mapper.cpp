@@ -50,10 +50,7 @@ void Mapper::add(const Sweep& sweep, const SyncBuffer& sensors, StageTimer& time
   const bool was_tilted = filter_.has_known_attitude() && !has_known_attitude;
   const bool has_trail = notice_own_returns();
   was_reset_ = was_tilted || has_trail;
-  if (was_reset_) {
-    surfels_.clear();
-    map_.clear();
-  }
+  if (was_reset_) forget_ground();
   timer.done(Stage::motion);
   const Eigen::Quaterniond predicted = pose().rotation;
   outcome_ = {};
@@ -70,6 +67,17 @@ void Mapper::add(const Sweep& sweep, const SyncBuffer& sensors, StageTimer& time
                                            : std::numeric_limits<double>::infinity();
   map_.add(sweep_, filter_.pose(), sweep.end_ns, reach);
   timer.done(Stage::map);
+}
+
+void Mapper::restart() {
+  dead_reckoning_.restart();
+  filter_ = {};
+  forget_ground();
+}
+
+void Mapper::forget_ground() {
+  surfels_.clear();
+  map_.clear();
 }
 
 void Mapper::take_still(const Sweep& sweep) {

@@ -78,19 +78,22 @@ void Registration::choose_key_points(const DeskewedSweep& sweep, SurfelMap& map,
     due[bin] += wanted[bin];
     if (due[bin] < sizes[bin]) continue;
     due[bin] -= sizes[bin];
-    key_points_.push_back({sweep.points.x[i], sweep.points.y[i], sweep.points.z[i]});
+    key_points_.push_back({{sweep.points.x[i], sweep.points.y[i], sweep.points.z[i]},
+                           -1e-9F * static_cast<float>(sweep.time_ns[i])});
   }
 }
 
 /// The key points' distances from the surfels at a pose, as evidence about it. A correspondence
 /// counts by a Cauchy weight of its distance, and within three standard deviations.
 /// @param uncertainty standard deviation of the points by the pose's error, metres
-Registration::Linearization Registration::linearize(const Pose& pose, double uncertainty,
-                                                    double shared, SurfelMap& map) const {
-  Linearization sum;
-  for (const Eigen::Vector3f& key_point : key_points_) {
-    const Eigen::Vector3d rotated = pose.rotation * key_point.cast<double>();
-    const Eigen::Vector3d point = rotated + pose.translation;
+template <class Filter>
+Registration::Linearization<typename Filter::Evidence> Registration::linearize(
+    const Filter& filter, double uncertainty, double shared, SurfelMap& map) const {
+  Linearization<typename Filter::Evidence> sum;
+  for (const KeyPoint& key_point : key_points_) {
+    const Eigen::Vector3d in_base = key_point.place.cast<double>();
+    const double before_s = key_point.before_s;
+    const Eigen::Vector3d point = filter.place(in_base, before_s);
     const Surfel* const surfel = map.at(point.cast<float>());
     if (surfel == nullptr) continue;
     const Eigen::Vector3d normal = surfel->normal.cast<double>();
@@ -101,8 +104,7 @@ Registration::Linearization Registration::linearize(const Pose& pose, double unc
     if (std::abs(distance) > 3 * std::sqrt(expected)) continue;
     const double robust = 1 / (1 + distance * distance / expected);
     const double weight = robust / (variance * shared);
-    Eigen::Matrix<double, 6, 1> jacobian;
-    jacobian << normal, rotated.cross(normal);
+    const auto jacobian = filter.jacobian(in_base, before_s, normal);
     sum.evidence.information += weight * jacobian * jacobian.transpose();
     sum.evidence.gradient += weight * distance * jacobian;
     sum.squares += robust * distance * distance;
@@ -123,10 +125,9 @@ Registration::Outcome Registration::align(const DeskewedSweep& sweep, SurfelMap&
   const double shared = filter.knows_attitude() ? kShared : kSharedAlone;
   filter.begin_update();
   const double uncertainty = uncertainty_of(filter);
-  PoseEvidence evidence;
+  typename Filter::Evidence evidence;
   for (int round = 1; round <= kMaxRounds; ++round) {
-    const Linearization found =
-        linearize(filter.pose(), round > 1 ? kUncertaintyAfter : uncertainty, shared, map);
+    const auto found = linearize(filter, round > 1 ? kUncertaintyAfter : uncertainty, shared, map);
     if (found.count < static_cast<int>(kMinKeyPoints)) break;
     evidence = found.evidence;
     outcome.key_points = found.count;

@@ -20,14 +20,17 @@ void SetupProbe::begin_window() {
   begin_ns_ = odometry_.end_ns();
 }
 
-void SetupProbe::add(const Sweep& sweep, const SyncBuffer& sensors) {
+bool SetupProbe::add(const Sweep& sweep, const SyncBuffer& sensors) {
   constexpr double kWindow = 0.45;  // seconds
-  if (!odometry_.add(sweep)) return begin_window();
-  add_step(sensors);
-  if (window_.seconds < kWindow) return;
-  end_window(sensors);
-  watch_.add(window_);
+  const bool follows = odometry_.add(sweep);
+  if (follows) add_step(sensors);
+  if (follows && window_.seconds < kWindow) return true;
+  if (follows) {
+    end_window(sensors);
+    watch_.add(window_);
+  }
   begin_window();
+  return follows;
 }
 
 /// The way from the sweep before to the last one.

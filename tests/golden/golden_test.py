@@ -37,6 +37,9 @@ class GoldenTest(programs.ProgramTest):
     def test_drive_faults(self):
         self.check("drive_faults")
 
+    def test_lidar_alone(self):
+        self.check("lidar_alone")
+
     def test_sweeps(self):
         self.check("sweeps")
 

@@ -18,7 +18,8 @@ SOURCES = {
     "cloud_paper": f"scree simulate {CLOUD}; config/paper.toml",
     "drive": f"scree simulate DIR {DRIVE}",
     "drive_faults": f"scree simulate DIR {FAULTS}",
-    "sweeps": f"scree simulate DIR {SWEEPS}; its lidar.pcap alone",
+    "lidar_alone": f"scree simulate DIR {SWEEPS}; its lidar.pcap alone",
+    "sweeps": f"scree simulate DIR {SWEEPS}; its lidar.pcap alone, map.registration = false",
     "interop": "the recording captures/interop of the shared data",
 }
 
@@ -52,8 +53,13 @@ class Inputs:
             return [self.drive(name, DRIVE)]
         if name == "drive_faults":
             return [self.drive(name, FAULTS)]
-        if name == "sweeps":
+        if name == "lidar_alone":
             return [os.path.join(self.drive(name, SWEEPS), "lidar.pcap")]
+        if name == "sweeps":
+            config = os.path.join(self.folder, "sweeps.toml")
+            with open(config, "w") as file:
+                file.write("[map]\nregistration = false\n")
+            return [os.path.join(self.drive(name, SWEEPS), "lidar.pcap"), "--config", config]
         return [self.recording()]
 
     def cloud(self, name):

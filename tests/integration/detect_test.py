@@ -320,8 +320,11 @@ class DetectTest(ProgramTest):
         self.assertIn(f"{len(drive[-1]['obstacles'])} obstacles", said)
 
         os.mkdir(lidar)
-        for name in ("lidar.pcap", "scree.toml"):
-            os.link(os.path.join(capture, name), os.path.join(lidar, name))
+        os.link(os.path.join(capture, "lidar.pcap"), os.path.join(lidar, "lidar.pcap"))
+        with open(os.path.join(capture, "scree.toml")) as file:
+            config = file.read()
+        with open(os.path.join(lidar, "scree.toml"), "w") as file:
+            file.write(config + "\n[map]\nregistration = false\n")
         self.detect(lidar)
         said, of_sweep = self.draw(lidar, lists)
         self.assertIn("one sweep, ", said)

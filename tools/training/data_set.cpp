@@ -61,7 +61,7 @@ private:
 class FromSweeps {
 public:
   explicit FromSweeps(const Settings& settings)
-      : lidar_(settings.lidar), pipeline_(settings, Networks()) {}
+      : lidar_(settings.lidar), pipeline_(by_themselves(settings), Networks()) {}
 
   LabelledClusters operator()(std::uint64_t seed) {
     constexpr std::array kRates = {5.0, 10.0, 10.0, 20.0};
@@ -72,6 +72,11 @@ public:
   }
 
 private:
+  static Settings by_themselves(Settings settings) {
+    settings.map.registration = false;
+    return settings;
+  }
+
   LidarSettings lidar_;
   Pipeline pipeline_;
 };

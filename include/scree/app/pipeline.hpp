@@ -18,6 +18,7 @@
 #include "scree/sync/sync_buffer.hpp"
 #include "scree/terrain/mapper.hpp"
 #include "scree/terrain/setup_probe.hpp"
+#include "scree/terrain/stand_in_motion.hpp"
 
 namespace scree {
 
@@ -29,9 +30,12 @@ struct Networks {
 
 /// From sweeps and motion samples to obstacle lists: the daemon and `scree detect` both run this.
 /// Each sweep is added to the map, and obstacles are found in the map; what moves is found in the
-/// sweep itself, and stays out of the map. As long as no IMU and no encoder has said anything, each
-/// sweep is taken by itself instead, and `odom` is `base`; an obstacle then keeps its id while it
-/// moves little from sweep to sweep. Memory is taken once, when it is made.
+/// sweep itself, and stays out of the map. As long as no IMU has said anything, the lidar's own
+/// odometry stands in for it, and for an encoder. Where neither is heard and the ground does not
+/// show how the lidar moves, each sweep is taken by itself instead, and `odom` is `base`; an
+/// obstacle then keeps its id while it moves little from sweep to sweep. Where a sensor is first
+/// heard, or the lidar's odometry goes on after it did not hold, map and `odom` begin anew. Memory
+/// is taken once, when it is made.
 class Pipeline {
 public:
   /// @param config_file its folder is searched first for the weights files; it may be empty
@@ -58,7 +62,7 @@ public:
   /// How long the stages of the last list took; none without time_stages().
   const StageTimes& stage_times() const { return timer_.times(); }
   /// What found the obstacles of the last list, and in which points.
-  const Detector& detector() const { return sweep_detector_ ? *sweep_detector_ : map_detector_; }
+  const Detector& detector() const { return uses_map() ? map_detector_ : *sweep_detector_; }
   const PointCloud& ground() const {
     return uses_map() ? mapper_->map().cloud() : mapper_->sweep().points;
   }
@@ -70,23 +74,30 @@ public:
   std::uint64_t tracks_dropped() const {
     return tracker().dropped() + moving_tracker_.dropped() + moving_boxes_.dropped();
   }
-  bool uses_map() const { return !sweep_detector_; }
+  /// Whether the last list is from the map, not from a sweep by itself.
+  bool uses_map() const { return uses_map_; }
   /// What the detector counted in the last sweep; points that did not get to it are dropped ones.
   StageCounts counts() const;
 
 private:
-  void check_setup(const Sweep& sweep);
+  void follow_motion(const Sweep& sweep);
+  const SyncBuffer* choose_motion() const;
+  void clear_tracks();
+  void report_setup();
   void detect_in_map();
   void add_moving();
   float ground_at(const Eigen::Vector3d& place) const;
-  void detect_in_sweep(const Sweep& sweep);
+  void detect_in_sweep(const Pose& pose);
 
   std::unique_ptr<SyncBuffer> sensors_;
   std::unique_ptr<Mapper> mapper_;
   std::unique_ptr<SetupProbe> setup_;
   SetupReport setup_report_;
+  std::unique_ptr<StandInMotion> stand_in_;
+  const SyncBuffer* motion_ = nullptr;  // sensors_, stand_in_, or none of them
+  bool has_map_ = false, uses_map_ = false;
   Detector map_detector_;
-  std::optional<Detector> sweep_detector_;  // until the robot's motion is known
+  std::optional<Detector> sweep_detector_;  // until IMU or encoder is heard
   Tracker tracker_, sweep_tracker_;
   MovingTracker moving_tracker_;
   MovingBoxes moving_boxes_;

@@ -112,7 +112,7 @@ void for_every_key(AnySettings& settings, Visit&& visit) {
       "busier host, and delays lists while a sensor is slow");
   key("registration", map.registration, "", 0, 0,
       "correct the pose by laying each sweep onto the ground seen before; false: dead reckoning "
-      "alone");
+      "alone, and without IMU and encoder each sweep by itself");
   key("registration_reach", map.registration_reach, "m", 1, 18,
       "points this far from the robot take part in registration");
   key("voxel", map.voxel, "m", 0.01, 1, "edge of the map's voxels: larger is faster and coarser");

@@ -19,6 +19,7 @@ struct MotionStep {
   Eigen::Vector3d displacement = Eigen::Vector3d::Zero();        ///< in `level`, metres
   double distance = 0;  ///< by the wheel, or extrapolated; metres, backwards below zero
   bool knows_attitude = false, knows_distance = false;  ///< measured up to the end
+  double attitude_walk = 0;                             ///< see SyncBuffer
   /// Not below zero, and little more than DeadReckoning::kLongestWaitNs.
   double seconds() const { return static_cast<double>(end_ns - begin_ns) * 1e-9; }
   /// Angle between the attitudes, rad.
@@ -46,6 +47,9 @@ public:
   /// @param trusts_wheel else the encoder counts as silent
   MotionStep advance(const SyncBuffer& sensors, std::int64_t begin_ns, std::int64_t end_ns,
                      SweepTrajectory& trajectory, bool trusts_wheel = true);
+
+  /// As if it had never gone.
+  void restart();
 
   /// What a silent sensor would have measured, by whoever knows better.
   void assume_rate(const Eigen::Vector3d& rate) { rate_ = rate; }  ///< rad/s, `base`

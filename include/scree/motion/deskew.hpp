@@ -17,6 +17,7 @@ struct EmptyBeam {
 struct DeskewedSweep {
   PointCloud points;                      ///< in `base` at the sweep's end
   FixedVector<Eigen::Vector3f> origins;   ///< the lidar's origin at each point's time, same frame
+  FixedVector<std::int32_t> time_ns;      ///< of each point, relative to the sweep's end
   FixedVector<float> scatter;             ///< of each point, see RangeScatter; metres
   FixedVector<std::uint8_t> is_isolated;  ///< whether it ends alone, see RangeScatter
   FixedVector<std::uint8_t>
@@ -28,6 +29,7 @@ struct DeskewedSweep {
   explicit DeskewedSweep(std::size_t capacity)
       : points(capacity),
         origins(capacity),
+        time_ns(capacity),
         scatter(capacity),
         is_isolated(capacity),
         is_moving(capacity),
@@ -37,6 +39,7 @@ struct DeskewedSweep {
   void clear() {
     points.clear();
     origins.clear();
+    time_ns.clear();
     scatter.clear();
     is_isolated.clear();
     is_moving.clear();

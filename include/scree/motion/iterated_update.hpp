@@ -7,14 +7,19 @@
 
 namespace scree {
 
-/// What a measurement knows of a pose: the sum of squares e^T information e + 2 gradient^T e of an
-/// error e. That is the position in the map's frame (m), then the rotation vector in it (rad).
-struct PoseEvidence {
-  Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
-  Eigen::Matrix<double, 6, 1> gradient = Eigen::Matrix<double, 6, 1>::Zero();
+/// What a measurement knows of a state: the sum of squares e^T information e + 2 gradient^T e of an
+/// error e.
+template <int kSize>
+struct StateEvidence {
+  Eigen::Matrix<double, kSize, kSize> information = Eigen::Matrix<double, kSize, kSize>::Zero();
+  Eigen::Matrix<double, kSize, 1> gradient = Eigen::Matrix<double, kSize, 1>::Zero();
 };
+/// The error is that of the position in the map's frame (m), then the rotation vector in it (rad).
+using PoseEvidence = StateEvidence<6>;
+/// Then those of the velocity (m/s) and of the angular rate (rad/s).
+using TwistEvidence = StateEvidence<12>;
 
-/// The update of an iterated extended Kalman filter by evidence about the first six of its errors.
+/// The update of an iterated extended Kalman filter by evidence about the first of its errors.
 template <int kErrors>
 class IteratedUpdate {
 public:
@@ -29,28 +34,31 @@ public:
   }
   /// One round. @param evidence linearised at what was corrected so far
   /// @return what to correct now; nothing where the evidence is no numbers
-  std::optional<Errors> round(const PoseEvidence& evidence) {
+  template <int kSize>
+  std::optional<Errors> round(const StateEvidence<kSize>& evidence) {
     Errors gradient = prior_ * applied_;
-    gradient.template head<6>() += evidence.gradient;
+    gradient.template head<kSize>() += evidence.gradient;
     const Errors correction = -information(evidence).llt().solve(gradient);
     if (!correction.allFinite()) return std::nullopt;
     applied_ += correction;
     return correction;
   }
   /// @param evidence of the last round
-  void end(const PoseEvidence& evidence, Covariance& covariance) const {
+  template <int kSize>
+  void end(const StateEvidence<kSize>& evidence, Covariance& covariance) const {
     covariance = information(evidence).inverse();
   }
 
 private:
-  Covariance information(const PoseEvidence& evidence) const {
+  template <int kSize>
+  Covariance information(const StateEvidence<kSize>& evidence) const {
     Covariance information = prior_;
-    information.template topLeftCorner<6, 6>() += evidence.information;
+    information.template topLeftCorner<kSize, kSize>() += evidence.information;
     return information;
   }
 
-  Covariance prior_;
-  Errors applied_;
+  Covariance prior_ = Covariance::Zero();
+  Errors applied_ = Errors::Zero();
 };
 
 }  // namespace scree

@@ -20,6 +20,7 @@ class PoseFilter {
 public:
   static constexpr int kErrors = 8;
   static constexpr double kTilt = 0.006;  ///< standard deviation of the IMU's roll and pitch, rad
+  using Evidence = PoseEvidence;
   using Errors = Eigen::Matrix<double, kErrors, 1>;
   using Covariance = Eigen::Matrix<double, kErrors, kErrors>;
 
@@ -36,6 +37,17 @@ public:
   void end_update(const PoseEvidence& evidence);
 
   const Pose& pose() const { return pose_; }
+  /// Where a point of `base` is in the map's frame, and how its distance along a direction there
+  /// changes with position and rotation. The motion within a sweep is taken for known.
+  Eigen::Vector3d place(const Eigen::Vector3d& point, double /*before_s*/) const {
+    return pose_ * point;
+  }
+  Eigen::Matrix<double, 6, 1> jacobian(const Eigen::Vector3d& point, double /*before_s*/,
+                                       const Eigen::Vector3d& direction) const {
+    Eigen::Matrix<double, 6, 1> jacobian;
+    jacobian << direction, (pose_.rotation * point).cross(direction);
+    return jacobian;
+  }
   /// Standard deviations.
   Eigen::Vector3d position_deviation() const {
     return covariance_.diagonal().head<3>().cwiseSqrt();

@@ -18,9 +18,10 @@ enum class SetupFault : std::uint8_t {
   encoder_scale,   ///< encoder.scale, or its sign
   encoder_place,   ///< encoder.translation, y
   lidar_unset,     ///< lidar.translation and lidar.rpy_deg are as delivered
+  motion_unknown,  ///< nothing tells how the robot moves: each sweep is taken by itself
   robot_body,      ///< robot.body lacks a box; the last, since there may be several
 };
-inline constexpr std::size_t kSetupFaults = 7;
+inline constexpr std::size_t kSetupFaults = 8;
 inline constexpr std::size_t kMostFindings = kSetupFaults - 1 + OwnReturns::kMostFound;
 
 struct SetupFinding {

@@ -41,8 +41,10 @@ public:
   static constexpr std::int64_t kSetBackNs = 1'000'000'000;
 
   /// @param imu_mount rotation imu -> base
-  explicit SyncBuffer(const Eigen::Quaterniond& imu_mount = Eigen::Quaterniond::Identity())
-      : attitude_(imu_mount) {}
+  /// @param attitude_walk see there
+  explicit SyncBuffer(const Eigen::Quaterniond& imu_mount = Eigen::Quaterniond::Identity(),
+                      double attitude_walk = 0)
+      : attitude_(imu_mount), attitude_walk_(attitude_walk) {}
 
   // Producers, one thread each. False: no room, dropped and counted.
   bool put(const ImuSample& sample);
@@ -69,6 +71,9 @@ public:
   const SampleHistory<ImuSample>& imu() const { return imu_; }
   const SampleHistory<EncoderSample>& wheel() const { return wheel_; }
   const HeadingJumpFilter& heading() const { return heading_; }
+  /// How much more than those of an IMU the turns between its attitudes err: standard deviation,
+  /// rad in a square root of a second.
+  double attitude_walk() const { return attitude_walk_; }
   /// Samples that found no room, and samples that gather() refused. Any thread.
   std::uint64_t dropped() const { return dropped_.load(std::memory_order_relaxed); }
   std::uint64_t late() const { return late_.load(std::memory_order_relaxed); }
@@ -99,6 +104,7 @@ private:
   SampleHistory<ImuSample> imu_{kHistory};
   SampleHistory<EncoderSample> wheel_{kHistory};
   AttitudeFilter attitude_;
+  double attitude_walk_;
   HeadingJumpFilter heading_;
   std::atomic<std::uint64_t> dropped_{0}, late_{0};
 };

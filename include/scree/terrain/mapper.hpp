@@ -34,6 +34,11 @@ public:
     add(sweep, sensors, none);
   }
 
+  bool registers() const { return registers_; }
+  /// Begins anew, at the origin: what comes next does not follow on what came before.
+  void restart();
+  /// Forgets the ground, and goes on from where it is.
+  void forget_ground();
   /// Takes a sweep by itself, as if the robot stood still. The map stays as it is.
   void take_still(const Sweep& sweep);
 

@@ -27,17 +27,23 @@ public:
   Outcome align(const DeskewedSweep& sweep, SurfelMap& map, Filter& filter);
 
 private:
-  /// What the key points at one pose say about it.
+  struct KeyPoint {
+    Eigen::Vector3f place;  ///< in `base`
+    float before_s;         ///< the sweep's end, when it was measured
+  };
+  /// What the key points say about the state at one pose.
+  template <class Evidence>
   struct Linearization {
-    PoseEvidence evidence;
+    Evidence evidence;
     double squares = 0, weights = 0;  ///< weighted sum of the squared distances, m^2; its weights
     int count = 0;                    ///< correspondences
   };
-  Linearization linearize(const Pose& pose, double uncertainty, double shared,
-                          SurfelMap& map) const;
+  template <class Filter>
+  Linearization<typename Filter::Evidence> linearize(const Filter& filter, double uncertainty,
+                                                     double shared, SurfelMap& map) const;
   void choose_key_points(const DeskewedSweep& sweep, SurfelMap& map, const Pose& pose);
 
-  FixedVector<Eigen::Vector3f> key_points_;  // in `base`
+  FixedVector<KeyPoint> key_points_;
   FixedVector<std::uint8_t> bins_;
 };
 

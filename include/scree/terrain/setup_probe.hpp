@@ -17,7 +17,8 @@ public:
   explicit SetupProbe(const Settings& settings);
 
   /// @param sensors gathered, and covering the sweep as far as they ever will
-  void add(const Sweep& sweep, const SyncBuffer& sensors);
+  /// @return as LidarOdometry::add()
+  bool add(const Sweep& sweep, const SyncBuffer& sensors);
 
   const SetupReport& report() const { return watch_.report(); }
   const LidarOdometry& odometry() const { return odometry_; }

@@ -68,6 +68,7 @@ protected:
 
   static Settings all_edges() {
     Settings settings = small_settings();
+    settings.map.registration = false;
     settings.detect_sweep.min_confidence = 0;
     settings.detect_sweep.edges.threshold = 0.1;
     settings.detect_sweep.edges.min_block_points = 1;
@@ -77,11 +78,23 @@ protected:
   }
 };
 
-TEST_F(PipelineMap, TakesSweepsByThemselvesUntilAMotionSensorSpeaks) {
-  const ObstacleList& alone = go(2, false);
-  EXPECT_FALSE(pipeline_.uses_map());
-  EXPECT_EQ(alone.pose.translation, Eigen::Vector3d::Zero());
-  EXPECT_EQ(pipeline_.ground().size(), sweep_.points.size());
+TEST_F(PipelineMap, PutsTheGroundTogetherByTheLidarAlone) {
+  ground_.roughness = 1.5;
+  const Pose reported = go(20, false).pose, begin = drive_.base(kSweep * sweeps_);
+  const ObstacleList& list = go(30, false);
+  EXPECT_TRUE(pipeline_.uses_map());
+  EXPECT_GT(pipeline_.ground().size(), 1000U);
+  const Pose moved = test::relative(reported, list.pose);
+  const Pose truth = test::relative(begin, drive_.base(kSweep * sweeps_));
+  EXPECT_GT(truth.translation.norm(), 2.5);
+  EXPECT_LT((moved.translation - truth.translation).norm(), 0.05);
+}
+
+/// odom begins where it is first heard.
+TEST_F(PipelineMap, BeginsAnewWhenAMotionSensorSpeaks) {
+  ground_.roughness = 1.5;
+  go(20, false);
+  EXPECT_TRUE(pipeline_.uses_map());
   const ObstacleList& first = go(1);
   EXPECT_TRUE(pipeline_.uses_map());
   EXPECT_LT(first.pose.translation.norm(), 0.15);
@@ -94,6 +107,33 @@ TEST_F(PipelineMap, TakesSweepsByThemselvesUntilAMotionSensorSpeaks) {
   EXPECT_EQ(&pipeline_.ground(), &pipeline_.mapper().map().cloud());
   go(2, false);
   EXPECT_TRUE(pipeline_.uses_map()) << "also when they fall silent";
+}
+
+class PipelineMapWithoutRegistration : public PipelineMap {
+protected:
+  PipelineMapWithoutRegistration() : PipelineMap(without()) {}
+  static Settings without() {
+    Settings settings = small_settings();
+    settings.map.registration = false;
+    return settings;
+  }
+};
+
+TEST_F(PipelineMapWithoutRegistration, TakesSweepsByThemselvesUntilAMotionSensorSpeaks) {
+  const ObstacleList& alone = go(2, false);
+  EXPECT_FALSE(pipeline_.uses_map());
+  EXPECT_EQ(alone.pose.translation, Eigen::Vector3d::Zero());
+  EXPECT_EQ(pipeline_.ground().size(), sweep_.points.size());
+  go(10);
+  EXPECT_TRUE(pipeline_.uses_map());
+}
+
+TEST_F(PipelineMap, TakesSweepsByThemselvesWhereTheGroundDoesNotShowTheWay) {
+  ground_.roughness = 0;
+  go(20, false);
+  EXPECT_FALSE(pipeline_.uses_map());
+  EXPECT_EQ(go(1, false).pose.translation, Eigen::Vector3d::Zero());
+  EXPECT_TRUE(pipeline_.has_looked());
 }
 
 TEST_F(PipelineMapOfEdges, AnObstacleOfSweepsByThemselvesKeepsItsId) {
@@ -161,7 +201,7 @@ TEST_F(PipelineMap, HasNotLookedWithItsFirstSweepNorWithAPartOfATurn) {
 }
 
 TEST_F(PipelineMap, TheGridOfAListIsAroundTheRobotAndSaysWhatWasSeen) {
-  go(2, false);
+  go(1, false);
   EXPECT_EQ(pipeline_.grid(), nullptr) << "a sweep by itself";
   const ObstacleList& list = go(20);
   const ObstacleGrid* grid = pipeline_.grid();

@@ -152,6 +152,7 @@ TEST_F(RegistrationTest, KeyPointsAreChosenByTheirNormals) {
       const Eigen::Vector3f seen = Eigen::Vector3d(x - 0.05, y, ridge(x, y)).cast<float>();
       sweep_.points.push_back(seen.x(), seen.y(), seen.z(), 20);
       sweep_.origins.push_back(Eigen::Vector3f(0, 0, 1));
+      sweep_.time_ns.push_back(0);
       sweep_.scatter.push_back(0);
       sweep_.is_isolated.push_back(0);
       sweep_.is_moving.push_back(0);
@@ -201,6 +202,7 @@ TEST_F(RegistrationTest, ADitchLeavesTheDirectionAlongIt) {
       const Eigen::Vector3f seen = (place - Eigen::Vector3d(0.07, 0.06, 0)).cast<float>();
       sweep_.points.push_back(seen.x(), seen.y(), seen.z(), 20);
       sweep_.origins.push_back(Eigen::Vector3f(0, 0, 1));
+      sweep_.time_ns.push_back(0);
       sweep_.scatter.push_back(0);
       sweep_.is_isolated.push_back(0);
       sweep_.is_moving.push_back(0);

@@ -78,6 +78,7 @@ inline void look(const RoughGround& ground, const Pose& pose, double reach, doub
           (pose.rotation.conjugate() * (place - pose.translation)).cast<float>();
       sweep.points.push_back(seen.x(), seen.y(), seen.z(), 20);
       sweep.origins.push_back(Eigen::Vector3f(0, 0, 1));
+      sweep.time_ns.push_back(0);
       sweep.scatter.push_back(0);
       sweep.is_isolated.push_back(0);
       sweep.is_moving.push_back(0);

@@ -56,7 +56,7 @@ void MotionCapture::finish() {
 
 void MotionCapture::report(const TimeSpan& lidar) const {
   if (!imu_ && !encoder_) {
-    note("neither IMU nor encoder in the capture: each sweep was taken by itself");
+    note("neither IMU nor encoder in the capture: the lidar alone told how the robot moves");
     return;
   }
   if (!imu_) {

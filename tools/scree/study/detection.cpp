@@ -38,7 +38,9 @@ std::vector<CloudScores> score_clouds(const std::vector<Way>& ways, const StudyT
 
 /// One turn of a lidar at rest, in all scenes.
 Scorer score_sweeps(const StudyTask& task) {
-  auto pipeline = Pipeline::make(task.settings, task.config_file);
+  Settings settings = task.settings;
+  settings.map.registration = false;  // one sweep does not follow on another
+  auto pipeline = Pipeline::make(settings, task.config_file);
   if (!pipeline) throw Failure(pipeline.error().message);
   Scorer scorer;
   Progress progress("sweeps", task.seeds.count);

@@ -57,7 +57,7 @@ void drive_without_faults(const Drive& drive, const Settings& settings, const St
   unregistered.map.registration = false;
   Pipeline pipeline = make_pipeline(settings, task);
   Pipeline dead_reckoning = make_pipeline(unregistered, task);
-  Pipeline sweeps = make_pipeline(settings, task);
+  Pipeline sweeps = make_pipeline(unregistered, task);
   DriveFeed feed(drive);
   Sweep sweep(static_cast<std::size_t>(settings.memory.sweep_points));
   while (feed.next(sweep, {&pipeline.sensors(), &dead_reckoning.sensors()})) {
