@@ -6,6 +6,14 @@
 #include <utility>
 
 namespace scree {
+namespace {
+
+/// Whether the lidar's own odometry is of use: registration is wanted, and no IMU was heard yet.
+bool needs_stand_in(const Mapper& mapper, const SyncBuffer& sensors) {
+  return mapper.registers() && sensors.imu().empty();
+}
+
+}  // namespace
 
 Result<Network> load_network(const std::string& name, const std::filesystem::path& config_file) {
   const auto file = find_file(name, config_file);
@@ -100,7 +108,8 @@ const ObstacleList& Pipeline::process(const Sweep& sweep) {
 /// Decides whose motion the map goes by, and begins it anew where that does not follow.
 void Pipeline::follow_motion(const Sweep& sweep) {
   const bool follows = setup_->add(sweep, *sensors_);
-  stand_in_->add(setup_->odometry(), follows, *sensors_);
+  const bool stands_in = needs_stand_in(*mapper_, *sensors_);
+  if (stands_in) stand_in_->add(setup_->odometry(), follows, *sensors_);
   timer_.done(Stage::setup);
   const SyncBuffer* const before = std::exchange(motion_, choose_motion());
   if (sensors_->has_motion()) sweep_detector_.reset();  // gives its memory back, once
@@ -108,7 +117,7 @@ void Pipeline::follow_motion(const Sweep& sweep) {
   if (motion_ != nullptr && has_map_ && !goes_on) {
     mapper_->restart();
     clear_tracks();
-  } else if (!sensors_->has_motion() && stand_in_->settles()) {
+  } else if (stands_in && !sensors_->has_motion() && stand_in_->settles()) {
     mapper_->forget_ground();
     clear_tracks();
   }
@@ -117,7 +126,7 @@ void Pipeline::follow_motion(const Sweep& sweep) {
 
 /// Null where nothing tells how the robot moves.
 const SyncBuffer* Pipeline::choose_motion() const {
-  const bool stands_in = mapper_->registers() && sensors_->imu().empty();
+  const bool stands_in = needs_stand_in(*mapper_, *sensors_);
   if (sensors_->has_motion() && !stands_in) return sensors_.get();
   if (stands_in && (sensors_->has_motion() || stand_in_->is_bound())) return &stand_in_->samples();
   return nullptr;
