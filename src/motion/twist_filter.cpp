@@ -75,8 +75,7 @@ Eigen::Vector3d TwistFilter::place(const Eigen::Vector3d& point, double before_s
 
 TwistFilter::Errors TwistFilter::jacobian(const Eigen::Vector3d& point, double before_s,
                                           const Eigen::Vector3d& direction) const {
-  Eigen::Matrix<double, 6, 1> of_pose;
-  of_pose << direction, (pose_.rotation * point).cross(direction);
+  const Eigen::Matrix<double, 6, 1> of_pose = pose_jacobian(pose_.rotation * point, direction);
   Errors jacobian;
   jacobian << of_pose, 0, 0, -before_s * of_pose.segment<3>(2), 0;
   return jacobian;

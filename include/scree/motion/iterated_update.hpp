@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <optional>
 
@@ -18,6 +19,16 @@ struct StateEvidence {
 using PoseEvidence = StateEvidence<6>;
 /// Then those of the velocity (m/s) and of the angular rate (rad/s).
 using TwistEvidence = StateEvidence<12>;
+
+/// How a point's distance along a direction changes with the error of a pose.
+/// @param rotated the point from the pose's origin, metres; this and the direction in the map's
+/// frame
+inline Eigen::Matrix<double, 6, 1> pose_jacobian(const Eigen::Vector3d& rotated,
+                                                 const Eigen::Vector3d& direction) {
+  Eigen::Matrix<double, 6, 1> jacobian;
+  jacobian << direction, rotated.cross(direction);
+  return jacobian;
+}
 
 /// The update of an iterated extended Kalman filter by evidence about the first of its errors.
 template <int kErrors>

@@ -44,9 +44,7 @@ public:
   }
   Eigen::Matrix<double, 6, 1> jacobian(const Eigen::Vector3d& point, double /*before_s*/,
                                        const Eigen::Vector3d& direction) const {
-    Eigen::Matrix<double, 6, 1> jacobian;
-    jacobian << direction, (pose_.rotation * point).cross(direction);
-    return jacobian;
+    return pose_jacobian(pose_.rotation * point, direction);
   }
   /// Standard deviations.
   Eigen::Vector3d position_deviation() const {
