@@ -25,7 +25,6 @@ DetectSettings DetectSettings::for_map() {
   DetectSettings detect;
   detect.leaf_size = 0;  // the map's points are voxels
   detect.surface.ground_trend = 2;
-  detect.surface.kernel_shared = 0.03;
   detect.surface.clustering = SurfaceClustering::regions;
   detect.surface.cluster_tolerance = 0.30;
   detect.network = "network_map.txt";

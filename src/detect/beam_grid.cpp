@@ -10,16 +10,6 @@
 namespace scree {
 namespace {
 
-/// The cell of a point. The raster is laid out for the points that found room; others may lie at
-/// its edge or beyond, and have none.
-std::optional<std::size_t> cell_of(PointView cloud, std::size_t i, const GroundSurface& surface) {
-  const float x = cloud.x[i], y = cloud.y[i];
-  if (!std::isfinite(x) || !std::isfinite(y)) return {};
-  const std::size_t cell = surface.cell_at(x, y);
-  if (!surface.has_neighbours(cell)) return {};
-  return cell;
-}
-
 /// The sum over the cells up to `reach` from one.
 float sum_around(const FixedVector<float>& of, std::size_t cell, std::size_t reach,
                  std::size_t columns) {
@@ -49,7 +39,8 @@ void BeamGrid::find_loose(PointView cloud, std::span<const BeamCount> beams,
   loose_.assign(cells, 0);
   surface.for_each_height(cloud, [&](std::size_t i, float height) {
     if (!(height >= lowest && height <= highest)) return;
-    const std::optional<std::size_t> cell = cell_of(cloud, i, surface);
+    // The raster is laid out for the points that found room; others may lie at its edge or beyond.
+    const std::optional<std::size_t> cell = surface.inner_cell_at(cloud.x[i], cloud.y[i]);
     if (!cell) return;
     ended_[*cell] += beams[i].ended;
     scatter_[*cell] += beams[i].scatter;
@@ -74,7 +65,7 @@ void BeamGrid::build(PointView cloud, std::span<const BeamCount> beams,
   if (beams.empty()) return;
   surface.for_each_height(cloud, [&](std::size_t i, float height) {
     if (!(height <= highest)) return;
-    const std::optional<std::size_t> cell = cell_of(cloud, i, surface);
+    const std::optional<std::size_t> cell = surface.inner_cell_at(cloud.x[i], cloud.y[i]);
     if (!cell) return;
     all_ended_[*cell] += beams[i].ended;
     all_scatter_[*cell] += beams[i].scatter;

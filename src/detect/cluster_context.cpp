@@ -28,7 +28,8 @@ bool has_near(std::size_t cell, std::size_t reach, const GroundSurface& surface,
 }
 
 float slope_of(const CandidatePoints& edges, std::size_t i) {
-  return std::hypot(edges.slope_x[i], edges.slope_y[i]);
+  const float x = edges.slope_x[i], y = edges.slope_y[i];
+  return std::sqrt(x * x + y * y);
 }
 
 // Metres around a cluster's box: its edge, and the ground it stands on.

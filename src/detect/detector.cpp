@@ -4,7 +4,6 @@
 
 #include "scree/detect/cell.hpp"
 #include "scree/detect/classification.hpp"
-#include "scree/detect/overhangs.hpp"
 
 namespace scree {
 
@@ -15,6 +14,7 @@ Detector::Detector(const DetectSettings& settings, const DetectorLimits& limits,
       network_(std::move(network)),
       voxel_grid_(leaf_size_ > 0 ? limits.points : 0),
       points_(limits.points),
+      overhangs_(clearance_ > 0 ? limits.ground_cells : 0),
       method_(make_method(settings, limits)),
       polygons_(std::max(limits.candidates, limits.ground_cells)),
       limit_(common_reach()) {}
@@ -29,9 +29,6 @@ float Detector::common_reach() const {
   float reach = visit_method([](const auto& method) { return method.reach(); });
   const std::size_t points = points_.capacity();
   if (leaf_size_ > 0) reach = std::min(reach, reach_of_cells(leaf_size_, points, 3));
-  if (clearance_ > 0) {
-    reach = std::min(reach, reach_of_cells(PlaneCells::cell_size(kOverhangRadius), points, 2));
-  }
   return reach;
 }
 
@@ -55,10 +52,7 @@ void Detector::take_in(PointView cloud) {
   counts_.dropped = intake.dropped;
   counts_.refused = intake.refused;
   counts_.voxels = points_.size();
-  if (clearance_ > 0) {
-    std::visit([this](auto& method) { remove_overhangs(points_, clearance_, method.cells()); },
-               method_);
-  }
+  if (clearance_ > 0) overhangs_.remove(points_, clearance_);
   counts_.below_clearance = points_.size();
 }
 

@@ -61,7 +61,7 @@ float EdgeMethod::reach() const {
 ClusteredPoints EdgeMethod::find(const PointCloud& points, const SeenCloud& cloud,
                                  StageCounts& counts, StageTimer& timer) {
   sloped_.cells.build(points, gradient_.reach());
-  sloped_.compute(gradient_, {});
+  sloped_.compute(gradient_);
   select_edges(counts);
   timer.done(Stage::gradient);
   if (suppression_) suppression_->suppress(edges_, edge_cells_, kept_);

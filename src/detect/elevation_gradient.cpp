@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "scree/detect/multiversion.hpp"
+#include "scree/detect/short_exp.hpp"
 
 namespace scree {
 namespace {
@@ -26,20 +27,6 @@ float sum(Lanes lanes) {
   return total;
 }
 
-/// Takes exp(-t) as (exp(-t / 2^n))^(2^n). Only neighbours within the radius count, so t has a
-/// largest value; with arguments up to 1/4 a short polynomial is exact to a float's rounding.
-struct ShortExp {
-  float scale = 1;
-  int squarings = 0;
-
-  explicit ShortExp(float largest) {
-    while (largest * scale > 0.25F && squarings < 24) {
-      scale *= 0.5F;
-      ++squarings;
-    }
-  }
-};
-
 /// What the inner loop needs, so that it reads registers only.
 struct Kernel {
   Lanes offset_x, offset_y;
@@ -49,15 +36,15 @@ struct Kernel {
   int min_neighbours;
 };
 
-struct Slope {
+struct UndividedSlope {
   float x, y;
 };
 
 /// The inner loop: all kernel sums of one point (eq. 4) in one pass over its neighbourhood. The
 /// Sobel sum is left undivided.
 SCREE_MULTIVERSION
-Slope sobel(const Kernel& kernel, const PointCloud& points, std::uint32_t i,
-            std::span<const Run> neighbourhood) {
+UndividedSlope sobel(const Kernel& kernel, const PointCloud& points, std::uint32_t i,
+                     std::span<const Run> neighbourhood) {
   const float x = points.x[i], y = points.y[i], z = points.z[i];
   const Lanes offset_x = kernel.offset_x, offset_y = kernel.offset_y;
   Lanes weights{}, elevations{};
@@ -67,9 +54,8 @@ Slope sobel(const Kernel& kernel, const PointCloud& points, std::uint32_t i,
       const Lanes dx = (points.x[j] - x) - offset_x, dy = (points.y[j] - y) - offset_y;
       const Lanes distance = dx * dx + dy * dy;
       const Masks inside = distance <= kernel.square;
-      const Lanes t = distance * kernel.exponent;
-      Lanes k = 1.0F + t * (1.0F + t * (0.5F + t * (1.0F / 6 + t * (1.0F / 24))));
-      for (int n = 0; n < kernel.squarings; ++n) k *= k;
+      Lanes k = distance * kernel.exponent;
+      ShortExp::replace(k, kernel.squarings);
       // The bits of k where it is inside, else of zero: cheaper than a choice without AVX.
       k = reinterpret_cast<Lanes>(reinterpret_cast<Masks>(k) & inside);
       weights += k;
@@ -88,8 +74,8 @@ Slope sobel(const Kernel& kernel, const PointCloud& points, std::uint32_t i,
 
 }  // namespace
 
-void ElevationGradient::compute(const PlaneCells& cells, std::span<const std::uint8_t> wanted,
-                                std::span<float> slope_x, std::span<float> slope_y) const {
+void ElevationGradient::compute(const PlaneCells& cells, std::span<float> slope_x,
+                                std::span<float> slope_y) const {
   const float square = radius * radius;
   const float decay = 1.0F / (2.0F * bandwidth * bandwidth);
   const ShortExp exp(square * decay);
@@ -97,32 +83,9 @@ void ElevationGradient::compute(const PlaneCells& cells, std::span<const std::ui
                       -decay * exp.scale, exp.squarings,      min_neighbours};
   const float share = 1.0F / (8.0F * spacing);
   const PointCloud& points = cells.points();
-  const float shared = shared_within * shared_within;
-  const auto is_wanted = [&](std::uint32_t i) { return wanted.empty() || wanted[i] != 0; };
-  std::ranges::fill(slope_x, kUnknown);
-  std::ranges::fill(slope_y, kUnknown);
-  const auto has_wanted = [&](Run cell) {
+  cells.for_each_cell([&](Run cell, std::span<const Run> neighbourhood) {
     for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
-      if (is_wanted(i)) return true;
-    }
-    return false;
-  };
-  cells.for_each_cell(has_wanted, [&](Run cell, std::span<const Run> neighbourhood) {
-    for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
-      if (!is_wanted(i)) continue;
-      // A slope depends on the place in the plane alone, so a column of points has one.
-      std::uint32_t same = shared > 0 ? cell.begin : i;
-      const auto is_near = [&](std::uint32_t j) {
-        const float dx = points.x[j] - points.x[i], dy = points.y[j] - points.y[i];
-        return dx * dx + dy * dy < shared;
-      };
-      while (same < i && !(is_wanted(same) && is_near(same))) ++same;
-      if (same < i) {
-        slope_x[i] = slope_x[same];
-        slope_y[i] = slope_y[same];
-        continue;
-      }
-      const Slope slope = sobel(kernel, points, i, neighbourhood);
+      const UndividedSlope slope = sobel(kernel, points, i, neighbourhood);
       slope_x[i] = slope.x * share;
       slope_y[i] = slope.y * share;
     }

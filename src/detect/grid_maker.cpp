@@ -102,10 +102,9 @@ CellState GridMaker::state_of(const GroundSurface& surface, const Eigen::Matrix2
 
 /// Whether something was seen in a cell of the surface that is no ground. @pre it has points
 bool GridMaker::stands_off(const GroundSurface& surface, std::size_t cell) const {
-  const float height = surface.height(surface.x_of(cell % surface.columns()),
-                                      surface.y_of(cell / surface.columns()));
-  return surface.top(cell) - height >= settings_.body_height ||
-         height - surface.seen(cell) >= settings_.body_height;
+  const float level = surface.level(cell);
+  return surface.top(cell) - level >= settings_.body_height ||
+         level - surface.seen(cell) >= settings_.body_height;
 }
 
 void GridMaker::cover(const ObstacleList& list, ObstacleKind kind, CellState state) {

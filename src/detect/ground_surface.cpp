@@ -51,6 +51,7 @@ void subtract_surface(const SurfaceRaster raster, const float* x, const float* y
 
 GroundSurface::GroundSurface(std::size_t max_points, std::size_t max_cells)
     : begin_(max_cells + 2),
+      cell_of_(max_points),
       z_(max_points),
       seen_(max_cells),
       top_(max_cells),
@@ -108,24 +109,18 @@ void GroundSurface::find_ground(const GroundSurfaceSettings& settings, Accuracy 
 }
 
 void GroundSurface::lay_out(PointView points, float cell_size) {
-  float high_x = 0, high_y = 0;
-  low_x_ = low_y_ = 0;
-  if (points.size() > 0) {
-    const auto [left, right] = std::ranges::minmax(points.x);
-    const auto [low, high] = std::ranges::minmax(points.y);
-    low_x_ = left, high_x = right, low_y_ = low, high_y = high;
-  }
+  const PlaneBounds bounds = bounds_of(points);
   const auto cells = [&](float low, float high) {
     return static_cast<std::size_t>((high - low) / cell_) + 1 + 2 * kBorder;
   };
   for (cell_ = cell_size;; cell_ *= 2) {
-    columns_ = cells(low_x_, high_x);
-    rows_ = cells(low_y_, high_y);
+    columns_ = cells(bounds.low_x, bounds.high_x);
+    rows_ = cells(bounds.low_y, bounds.high_y);
     if (columns_ * rows_ <= seen_.capacity()) break;
   }
   inverse_ = 1 / cell_;
-  low_x_ -= static_cast<float>(kBorder) * cell_;
-  low_y_ -= static_cast<float>(kBorder) * cell_;
+  low_x_ = bounds.low_x - static_cast<float>(kBorder) * cell_;
+  low_y_ = bounds.low_y - static_cast<float>(kBorder) * cell_;
 }
 
 float GroundSurface::gather(PointView points) {
@@ -133,11 +128,16 @@ float GroundSurface::gather(PointView points) {
   // Counting sort: begin_[cell + 2] counts, then begin_[cell + 1] runs from each cell's first place
   // to its last.
   begin_.assign(cells + 2, 0);
-  for (std::size_t i = 0; i < points.size(); ++i) ++begin_[cell_at(points.x[i], points.y[i]) + 2];
+  cell_of_.resize(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::size_t cell = cell_at(points.x[i], points.y[i]);
+    cell_of_[i] = static_cast<std::uint32_t>(cell);
+    ++begin_[cell + 2];
+  }
   for (std::size_t cell = 0; cell < cells; ++cell) begin_[cell + 2] += begin_[cell + 1];
   z_.resize(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    z_[begin_[cell_at(points.x[i], points.y[i]) + 1]++] = points.z[i];
+    z_[begin_[cell_of_[i] + 1]++] = points.z[i];
   }
   seen_.resize(cells);
   top_.resize(cells);

@@ -9,8 +9,8 @@
 namespace scree {
 namespace {
 
-constexpr float kBelow = 0.06F;  // metres: what lies deeper is below the ground
-constexpr float kFarthest = 15;  // metres that passing beams are followed
+constexpr float kBelow = 0.06F;          // metres: what lies deeper is below the ground
+constexpr float kFarthestFollowed = 15;  // metres that passing beams are followed
 
 }  // namespace
 
@@ -80,14 +80,15 @@ int HoleEvidence::steps_above(const Eigen::Vector3f& place, const Eigen::Vector3
   const float least =
       std::min({steps(u, tile_u, direction.x()), steps(v, tile_v, direction.y()), down});
   constexpr float kRounding = 0.01F;  // steps
-  return static_cast<int>(std::clamp(least - kRounding, 0.0F, kFarthest / surface.cell_size()));
+  return static_cast<int>(
+      std::clamp(least - kRounding, 0.0F, kFarthestFollowed / surface.cell_size()));
 }
 
 /// Follows a beam down to the surface, and a way on below it. @pre it goes down
 void HoleEvidence::follow_passing(const PassingBeam& beam, const GroundSurface& surface) {
   constexpr float kBelowFor = 4;  // metres
   const Eigen::Vector3f stride = surface.cell_size() * beam.direction;
-  const auto steps = static_cast<int>(kFarthest / surface.cell_size());
+  const auto steps = static_cast<int>(kFarthestFollowed / surface.cell_size());
   for (int i = 0; i < steps; ++i) {
     const Eigen::Vector3f at = beam.origin + static_cast<float>(i) * stride;
     if (!surface.covers(at.x(), at.y())) return;
@@ -141,9 +142,9 @@ void HoleEvidence::mark_lost(const Eigen::Vector3f& from, const Eigen::Vector3f&
   const Eigen::Vector3f stride = way / static_cast<float>(std::max(steps, 1));
   Eigen::Vector3f at = from;
   for (int i = 0; i < steps; ++i, at += stride) {
-    if (!surface.covers(at.x(), at.y())) return;
-    const std::size_t cell = surface.cell_at(at.x(), at.y());
-    if (!surface.has_neighbours(cell)) return;
+    const std::optional<std::size_t> inner = surface.inner_cell_at(at.x(), at.y());
+    if (!inner) return;
+    const std::size_t cell = *inner;
     if (surface.is_ground(cell)) {
       if (surface.height(at.x(), at.y()) - at.z() > kBelow) return;
       continue;

@@ -29,14 +29,14 @@ SurfaceMethod::SurfaceMethod(const SurfaceSettings& settings, double clearance,
     : settings_(settings),
       highest_(clearance > 0 ? static_cast<float>(clearance)
                              : std::numeric_limits<float>::infinity()),
-      max_points_(limits.points),
       max_candidates_(limits.candidates),
-      gradient_(gradient_of(settings.kernel, settings.kernel_shared)),
-      sloped_(limits.points),
+      kernel_(gradient_of(settings.kernel)),
+      gradient_(limits.ground_cells),
       surface_(limits.points, limits.ground_cells),
       beam_grid_(limits.ground_cells),
       height_(limits.points),
       is_off_ground_(limits.points),
+      is_hidden_(limits.points),
       candidates_(limits.candidates),
       kept_(limits.candidates),
       euclidean_(limits.candidates),
@@ -53,19 +53,17 @@ SurfaceMethod::SurfaceMethod(const SurfaceSettings& settings, double clearance,
 
 float SurfaceMethod::reach() const {
   const auto tolerance = static_cast<float>(settings_.cluster_tolerance);
-  return std::min(reach_of_cells(PlaneCells::cell_size(gradient_.reach()), max_points_, 2),
-                  reach_of_cells(EuclideanClusters::cell_size(tolerance), max_candidates_, 3));
+  return reach_of_cells(EuclideanClusters::cell_size(tolerance), max_candidates_, 3);
 }
 
 ClusteredPoints SurfaceMethod::find(const PointCloud& points, const SeenCloud& cloud,
                                     StageCounts& counts, StageTimer& timer) {
-  sloped_.cells.build(points, gradient_.reach());
-  build_ground(cloud);
-  mark_points_off_ground();
+  build_ground(points, cloud);
+  mark_points_off_ground(points);
   thin_candidates(counts);
   timer.done(Stage::surface);
-  sloped_.compute(gradient_, is_off_ground_);
-  gather_candidates(counts);
+  gradient_.build(points, is_hidden_, kernel_);
+  gather_candidates(points, counts);
   timer.done(Stage::gradient);
   remove_isolated_points(candidates_,
                          kIsolationReach * static_cast<float>(settings_.cluster_tolerance),
@@ -82,48 +80,36 @@ ClusteredPoints SurfaceMethod::find(const PointCloud& points, const SeenCloud& c
   return result();
 }
 
-void SurfaceMethod::build_ground(const SeenCloud& cloud) {
+void SurfaceMethod::build_ground(const PointCloud& points, const SeenCloud& cloud) {
   const GroundSurfaceSettings ground = ground_surface_of(settings_);
   const auto lowest = static_cast<float>(settings_.body_height);
   if (cloud.beams.empty()) {
-    surface_.build(sloped_.points(), ground);
+    surface_.build(points, ground);
   } else {
     // What is loose, a rough surface tells.
-    surface_.build(sloped_.points(), ground, GroundSurface::Accuracy::rough);
+    surface_.build(points, ground, GroundSurface::Accuracy::rough);
     beam_grid_.find_loose(cloud.points, cloud.beams, surface_, lowest, highest_);
     surface_.build_below(beam_grid_.loose(), ground);
   }
   beam_grid_.build(cloud.points, cloud.beams, surface_, lowest, highest_);
   evidence_.build(cloud, surface_);
   edges_.find(surface_, evidence_);
-  if (!cloud.beams.empty()) leave_out_ground_below_edges();
 }
 
-/// A rock that is narrower at the ground than above is no less steep for the ground seen below it.
-void SurfaceMethod::leave_out_ground_below_edges() {
-  const PointCloud& points = sloped_.points();
-  const auto highest = static_cast<float>(settings_.body_height);
-  height_.resize(points.size());
-  surface_.heights_above(points, height_);
-  sloped_.cells.remove([&](std::size_t i) {
-    return std::abs(height_[i]) < highest &&
-           beam_grid_.stops_all(surface_.cell_at(points.x[i], points.y[i]));
-  });
-}
-
-void SurfaceMethod::mark_points_off_ground() {
-  const PointCloud& points = sloped_.points();
+void SurfaceMethod::mark_points_off_ground(const PointCloud& points) {
   const auto least = static_cast<float>(settings_.body_height);
   height_.resize(points.size());
   is_off_ground_.resize(points.size());
+  is_hidden_.resize(points.size());
   surface_.heights_above(points, height_);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    is_off_ground_[i] = 0;
-    if (std::abs(height_[i]) < least) continue;
-    const std::size_t cell = surface_.cell_at(points.x[i], points.y[i]);
+    const std::size_t cell = surface_.cell_of(i);
+    const bool is_low = std::abs(height_[i]) < least;
     // Among grass the ground is seen, and what stands on it.
     const bool is_ground = surface_.is_ground(cell) && !beam_grid_.is_loose(cell);
-    is_off_ground_[i] = is_ground ? 0 : 1;
+    is_off_ground_[i] = is_low || is_ground ? 0 : 1;
+    // A rock that is narrower at the ground than above is no less steep for the ground seen below.
+    is_hidden_[i] = is_low && beam_grid_.stops_all(cell) ? 1 : 0;
   }
 }
 
@@ -146,14 +132,17 @@ void SurfaceMethod::thin_candidates(StageCounts& counts) {
   }
 }
 
-void SurfaceMethod::gather_candidates(StageCounts& counts) {
+void SurfaceMethod::gather_candidates(const PointCloud& points, StageCounts& counts) {
   candidates_.clear();
-  for (std::size_t i = 0; i < sloped_.size(); ++i) {
-    const bool is_known = sloped_.is_known(i);
-    if (is_known) ++counts.known;
+  for (std::size_t i = 0; i < points.size(); ++i) {
     if (is_off_ground_[i] == 0) continue;
-    if (!candidates_.push_back(sloped_.points(), i, is_known ? sloped_.slope_x[i] : 0.0F,
-                               is_known ? sloped_.slope_y[i] : 0.0F, height_[i])) {
+    Slope slope = gradient_.at(points.x[i], points.y[i]);
+    if (std::isnan(slope.x)) {
+      slope = {0, 0};
+    } else {
+      ++counts.known;
+    }
+    if (!candidates_.push_back(points, i, slope.x, slope.y, height_[i])) {
       ++counts.candidates_dropped;
     }
   }

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <numeric>
 
 namespace scree {
 namespace {
@@ -29,9 +28,7 @@ RollingMap::RollingMap(const MapSettings& settings, std::size_t max_voxels)
       cloud_(voxels_.capacity()),
       passing_(kPassingBeams),
       beams_(cloud_.capacity()),
-      origins_(cloud_.capacity()),
-      places_(TileGrid::kSlots + 1),
-      chosen_(cloud_.capacity()) {}
+      origins_(cloud_.capacity()) {}
 
 void RollingMap::clear() {
   voxels_.clear();
@@ -99,10 +96,21 @@ void RollingMap::decay_beam_counts() {
 
 void RollingMap::add_points(const DeskewedSweep& sweep, const Eigen::Matrix3f& rotation,
                             const Eigen::Vector3f& translation, float reach) {
+  // Shots ahead whose voxels are fetched into the cache, and whose places in the index before that.
+  constexpr std::size_t kVoxelAhead = 8, kIndexAhead = 16;
   const auto search_reach = static_cast<float>(settings_.search_reach);
   const Eigen::Vector3f origin = origin_.cast<float>();
-  for (std::size_t i = 0; i < sweep.points.size(); ++i) {
-    const Eigen::Vector3f in_base(sweep.points.x[i], sweep.points.y[i], sweep.points.z[i]);
+  const std::size_t count = sweep.points.size();
+  const auto point_in_base = [&](std::size_t i) {
+    return Eigen::Vector3f(sweep.points.x[i], sweep.points.y[i], sweep.points.z[i]);
+  };
+  const auto key_ahead = [&](std::size_t i) {
+    return key_of(rotation * point_in_base(std::min(i, count - 1)) + translation);
+  };
+  for (std::size_t i = 0; i < count; ++i) {
+    voxels_.prefetch_index(key_ahead(i + kIndexAhead));
+    voxels_.prefetch_voxel(key_ahead(i + kVoxelAhead));
+    const Eigen::Vector3f in_base = point_in_base(i);
     if (in_base.squaredNorm() > reach * reach) continue;
     const Eigen::Vector3f point = rotation * in_base + translation;
     if (in_base.squaredNorm() <= search_reach * search_reach) {
@@ -227,38 +235,18 @@ void RollingMap::prune() {
   }
 }
 
-/// Takes the cloud out of the voxels, tile by tile of the plane, so that the stages that walk over
-/// it find what they need in the processor's cache.
 void RollingMap::extract_cloud() {
   const auto reach = static_cast<float>(settings_.search_reach);
-  places_.assign(TileGrid::kSlots + 1, 0);
-  chosen_.clear();
-  for (std::uint32_t i = 0; i < voxels_.size(); ++i) {
-    MapVoxel& voxel = voxels_[i];
+  cloud_.clear();
+  beams_.clear();
+  origins_.clear();
+  for (MapVoxel& voxel : voxels_) {
     const bool is_far = (voxel.mean - robot_).squaredNorm() > reach * reach;
     if (is_far || is_dust(voxel) || !confirm(voxel)) continue;
-    const std::uint32_t tile = tile_of(voxel.key);
-    chosen_.push_back({i, tile});
-    ++places_[tile + 1];
+    cloud_.push_back(voxel.mean.x(), voxel.mean.y(), voxel.mean.z(), voxel.reflectivity);
+    beams_.push_back(voxel.beams);
+    origins_.push_back(voxel.seen_from);
   }
-  std::partial_sum(places_.begin(), places_.end(), places_.begin());
-  cloud_.resize(chosen_.size());
-  beams_.resize(chosen_.size());
-  origins_.resize(chosen_.size());
-  for (const Chosen& chosen : chosen_) {
-    const MapVoxel& voxel = voxels_[chosen.voxel];
-    const std::uint32_t place = places_[chosen.tile]++;
-    cloud_.x[place] = voxel.mean.x();
-    cloud_.y[place] = voxel.mean.y();
-    cloud_.z[place] = voxel.mean.z();
-    cloud_.reflectivity[place] = voxel.reflectivity;
-    beams_[place] = voxel.beams;
-    origins_[place] = voxel.seen_from;
-  }
-}
-
-std::uint32_t RollingMap::tile_of(const VoxelKey& key) {
-  return static_cast<std::uint32_t>(TileGrid::CellIndex{key.x >> 3, key.y >> 3, 0}.slot());
 }
 
 }  // namespace scree

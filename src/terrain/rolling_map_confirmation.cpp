@@ -1,7 +1,33 @@
 #include "scree/terrain/rolling_map.hpp"
 
+#include <array>
+#include <cstddef>
+
 // Which voxels of the map are ground or things on it, and which are noise or dust.
 namespace scree {
+namespace {
+
+struct Offset {
+  int x, y, z;
+};
+
+/// The voxels around one, those that share a face first: they are most often hit, too.
+constexpr std::array<Offset, 26> kAround = [] {
+  std::array<Offset, 26> around{};
+  std::size_t count = 0;
+  for (int axes = 1; axes <= 3; ++axes) {
+    for (int x = -1; x <= 1; ++x) {
+      for (int y = -1; y <= 1; ++y) {
+        for (int z = -1; z <= 1; ++z) {
+          if (x * x + y * y + z * z == axes) around[count++] = {x, y, z};
+        }
+      }
+    }
+  }
+  return around;
+}();
+
+}  // namespace
 
 /// The neighbourhood is looked at every few sweeps only: what was found there stays, mostly.
 bool RollingMap::confirm(MapVoxel& voxel) const {
@@ -21,19 +47,14 @@ bool RollingMap::has_confirmation(const MapVoxel& voxel) const {
   if (is_hit_enough(voxel)) return true;
   if (voxel.is_isolated()) return false;
   std::uint32_t other_sweep = voxel.last_sweep;
-  for (int x = -1; x <= 1; ++x) {
-    for (int y = -1; y <= 1; ++y) {
-      for (int z = -1; z <= 1; ++z) {
-        if (x == 0 && y == 0 && z == 0) continue;
-        const MapVoxel* const near = voxels_.find(voxel.key.shifted(x, y, z));
-        if (near == nullptr) continue;
-        if (is_hit_enough(*near)) return true;
-        if (near->is_isolated()) continue;
-        if (near->last_sweep == voxel.last_sweep || near->last_sweep == other_sweep) continue;
-        if (other_sweep != voxel.last_sweep) return true;
-        other_sweep = near->last_sweep;
-      }
-    }
+  for (const Offset& offset : kAround) {
+    const MapVoxel* const near = voxels_.find(voxel.key.shifted(offset.x, offset.y, offset.z));
+    if (near == nullptr) continue;
+    if (is_hit_enough(*near)) return true;
+    if (near->is_isolated()) continue;
+    if (near->last_sweep == voxel.last_sweep || near->last_sweep == other_sweep) continue;
+    if (other_sweep != voxel.last_sweep) return true;
+    other_sweep = near->last_sweep;
   }
   return false;
 }

@@ -59,7 +59,7 @@ void RollingMap::trace_ray(const Eigen::Vector3f& from, const Eigen::Vector3f& b
       continue;
     }
     MapVoxel* const voxel = voxels_.find(key);
-    if (voxel == last) continue;
+    if (voxel == nullptr || voxel == last) continue;
     last = voxel;
     const Eigen::Vector3f to_mean = voxel->mean - from;
     const Eigen::Vector3f aside = to_mean - to_mean.dot(along) * along;  // from the beam

@@ -8,6 +8,7 @@ VoxelHashMap::VoxelHashMap(std::size_t capacity)
     : voxels_(capacity),
       numbers_(std::bit_ceil(2 * capacity)),
       mask_(numbers_.capacity() - 1),
+      masks_(BlockGrid::kSlots),
       in_block_(BlockGrid::kSlots),
       in_region_(RegionGrid::kSlots) {
   clear();
@@ -20,6 +21,7 @@ void VoxelHashMap::clear() {
 
 void VoxelHashMap::clear_index() {
   numbers_.assign(numbers_.capacity(), 0);
+  masks_.assign(masks_.capacity(), 0);
   in_block_.assign(in_block_.capacity(), 0);
   in_region_.assign(in_region_.capacity(), 0);
 }
@@ -27,6 +29,13 @@ void VoxelHashMap::clear_index() {
 void VoxelHashMap::index(std::size_t voxel, std::size_t slot) {
   numbers_[slot] = static_cast<std::uint32_t>(voxel + 1);
   voxels_[voxel].slot = static_cast<std::uint32_t>(slot);
+}
+
+void VoxelHashMap::count(const VoxelKey& key) {
+  const std::size_t block = block_of(key);
+  masks_[block] |= std::uint64_t{1} << bit_of(key);
+  ++in_block_[block];
+  ++in_region_[region_of(key)];
 }
 
 MapVoxel* VoxelHashMap::find_or_add(const VoxelKey& key) {
@@ -37,13 +46,14 @@ MapVoxel* VoxelHashMap::find_or_add(const VoxelKey& key) {
   voxel.key = key;
   voxels_.push_back(voxel);
   index(voxels_.size() - 1, slot);
-  ++in_block_[block_of(key)];
-  ++in_region_[region_of(key)];
+  count(key);
   return &voxels_.back();
 }
 
 void VoxelHashMap::erase(std::size_t voxel) {
-  --in_block_[block_of(voxels_[voxel].key)];
+  const std::size_t block = block_of(voxels_[voxel].key);
+  // A voxel of a block far off may stand behind the same bit, so it stays until all have gone.
+  if (--in_block_[block] == 0) masks_[block] = 0;
   --in_region_[region_of(voxels_[voxel].key)];
   // What follows in the same run of slots moves up, so that no search ends at the gap.
   std::size_t gap = voxels_[voxel].slot;
@@ -68,8 +78,7 @@ void VoxelHashMap::shift(int dx, int dy, int dz) {
     VoxelKey& key = voxels_[i].key;
     key = key.shifted(dx, dy, dz);
     index(i, slot_of(key));
-    ++in_block_[block_of(key)];
-    ++in_region_[region_of(key)];
+    count(key);
   }
 }
 

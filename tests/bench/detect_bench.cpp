@@ -149,7 +149,7 @@ void elevation_gradient(benchmark::State& state) {
   FixedVector<float> slope_x(max_points()), slope_y(max_points());
   slope_x.resize(cells.size());
   slope_y.resize(cells.size());
-  for (auto _ : state) gradient().compute(cells, {}, slope_x, slope_y);
+  for (auto _ : state) gradient().compute(cells, slope_x, slope_y);
 }
 BENCHMARK(elevation_gradient)->Unit(benchmark::kMillisecond);
 

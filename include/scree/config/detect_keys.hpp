@@ -100,9 +100,6 @@ void for_each_surface_key(Surface& surface, Visit&& key) {
   key("body_height", surface.body_height, "m", 0, 10,
       "least height above or depth below the surface of an obstacle's points");
   for_each_kernel_key(surface.kernel, key);
-  key("kernel_shared", surface.kernel_shared, "m", 0, 1,
-      "points nearer to one another in the plane share a gradient: faster where points stand above "
-      "one another; 0: each has its own");
   key("cluster_method", surface.clustering, "", 0, 0,
       "regions clusters the points on the raster of the ground: seen ground parts them, unseen "
       "ground does not; euclidean by their distance in the plane");

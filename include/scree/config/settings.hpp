@@ -223,7 +223,6 @@ struct SurfaceSettings {
 
   double body_height = 0.06;
   KernelSettings kernel;
-  double kernel_shared = 0;
 
   SurfaceClustering clustering = SurfaceClustering::euclidean;
   double saddle = 0.6;

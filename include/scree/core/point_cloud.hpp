@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 
@@ -47,5 +48,22 @@ struct PointCloud {
   }
   operator PointView() const { return {x, y, z, reflectivity}; }
 };
+
+/// What points cover of the plane, metres; nothing around the origin where there is none.
+struct PlaneBounds {
+  float low_x = 0, high_x = 0, low_y = 0, high_y = 0;
+};
+
+inline PlaneBounds bounds_of(const PointView& points) {
+  if (points.size() == 0) return {};
+  PlaneBounds bounds{points.x[0], points.x[0], points.y[0], points.y[0]};
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    bounds.low_x = std::min(bounds.low_x, points.x[i]);
+    bounds.high_x = std::max(bounds.high_x, points.x[i]);
+    bounds.low_y = std::min(bounds.low_y, points.y[i]);
+    bounds.high_y = std::max(bounds.high_y, points.y[i]);
+  }
+  return bounds;
+}
 
 }  // namespace scree

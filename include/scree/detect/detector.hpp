@@ -10,6 +10,7 @@
 #include "scree/detect/edge_method.hpp"
 #include "scree/detect/enclosing_polygon.hpp"
 #include "scree/detect/network.hpp"
+#include "scree/detect/overhangs.hpp"
 #include "scree/detect/stage_counts.hpp"
 #include "scree/detect/surface_method.hpp"
 #include "scree/detect/voxel_grid.hpp"
@@ -61,6 +62,7 @@ private:
   Network network_;
   VoxelGrid voxel_grid_;
   PointCloud points_;
+  Overhangs overhangs_;
   AnyMethod method_;
   EnclosingPolygons polygons_;
   float limit_;  // metres from the origin within which every stage's cells can be told apart

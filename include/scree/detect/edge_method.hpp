@@ -37,8 +37,6 @@ public:
 
   // What each stage of the last call gave.
   const SlopedCloud& sloped() const { return sloped_; }
-  /// Free until the next call.
-  PlaneCells& cells() { return sloped_.cells; }
   const CandidatePoints& candidates() const { return edges_; }
   ClusteredPoints result() const { return {suppression_ ? kept_ : edges_, clusters_}; }
   /// Null without super-voxels.

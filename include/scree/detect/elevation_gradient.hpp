@@ -1,19 +1,18 @@
 #pragma once
 
-#include <cstdint>
 #include <span>
 
+#include "scree/config/settings.hpp"
 #include "scree/detect/plane_cells.hpp"
 
 namespace scree {
 
 /// Gaussian-kernel Sobel operator on scattered points (paper eq. 1-4, fig. 2-3).
 struct ElevationGradient {
-  float spacing;            ///< d: distance of the eight positions around a point, metres
-  float radius;             ///< r: reach of the kernel at each position, metres
-  float bandwidth;          ///< standard deviation of the kernel, metres; the paper prints 2r
-  int min_neighbours;       ///< least points within `radius` of each position
-  float shared_within = 0;  ///< points nearer to one another in the plane share a slope, metres
+  float spacing;       ///< d: distance of the eight positions around a point, metres
+  float radius;        ///< r: reach of the kernel at each position, metres
+  float bandwidth;     ///< standard deviation of the kernel, metres; the paper prints 2r
+  int min_neighbours;  ///< least points within `radius` of each position
 
   /// How far from a point its neighbours matter; give it to PlaneCells::build().
   float reach() const { return spacing + radius; }
@@ -21,10 +20,14 @@ struct ElevationGradient {
   /// Writes for every sorted point of `cells` the slope of the elevation along x and y (metres per
   /// metre). Both are NaN where one of the eight positions has too few neighbours: not known is not
   /// zero.
-  /// @param wanted for each sorted point whether its slope is wanted, or empty where all are; a
-  /// point with 0 gets NaN
-  void compute(const PlaneCells& cells, std::span<const std::uint8_t> wanted,
-               std::span<float> slope_x, std::span<float> slope_y) const;
+  void compute(const PlaneCells& cells, std::span<float> slope_x, std::span<float> slope_y) const;
 };
+
+inline ElevationGradient gradient_of(const KernelSettings& kernel) {
+  return {.spacing = static_cast<float>(kernel.spacing),
+          .radius = static_cast<float>(kernel.radius),
+          .bandwidth = static_cast<float>(kernel.bandwidth * kernel.radius),
+          .min_neighbours = kernel.neighbours};
+}
 
 }  // namespace scree

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "scree/core/fixed_vector.hpp"
@@ -77,6 +78,17 @@ public:
   std::size_t rows() const { return rows_; }
   float cell_size() const { return cell_; }
   std::size_t cell_at(float x, float y) const;
+  /// The cell of a place that has neighbours; none for other places, and for what is no number.
+  std::optional<std::size_t> inner_cell_at(float x, float y) const {
+    const float u = column_of(x), v = row_of(y);
+    const bool is_inner = u >= 1 && u < static_cast<float>(columns_ - 1) && v >= 1 &&
+                          v < static_cast<float>(rows_ - 1);
+    if (!is_inner) return {};
+    return static_cast<std::size_t>(static_cast<std::int32_t>(v)) * columns_ +
+           static_cast<std::size_t>(static_cast<std::int32_t>(u));
+  }
+  /// The cell of one of the points of the last build.
+  std::size_t cell_of(std::size_t point) const { return cell_of_[point]; }
   bool covers(float x, float y) const {
     return column_of(x) >= 0 && column_of(x) < static_cast<float>(columns_) && row_of(y) >= 0 &&
            row_of(y) < static_cast<float>(rows_);
@@ -122,11 +134,12 @@ private:
 
   float cell_ = 1, inverse_ = 1, low_x_ = 0, low_y_ = 0;
   std::size_t columns_ = 0, rows_ = 0;
-  FixedVector<std::uint32_t> begin_;  // where each cell's points begin in z_, and one more
-  FixedVector<float> z_;              // z of the points, cell by cell
-  FixedVector<float> seen_;           // height seen in each cell; NaN: no point
-  FixedVector<float> top_;            // z of the highest point in each cell
-  FixedVector<float> smooth_;         // scratch: blurred heights, then the surface
+  FixedVector<std::uint32_t> begin_;    // where each cell's points begin in z_, and one more
+  FixedVector<std::uint32_t> cell_of_;  // by point
+  FixedVector<float> z_;                // z of the points, cell by cell
+  FixedVector<float> seen_;             // height seen in each cell; NaN: no point
+  FixedVector<float> top_;              // z of the highest point in each cell
+  FixedVector<float> smooth_;           // scratch: blurred heights, then the surface
   FixedVector<std::uint8_t> ground_;
   FixedVector<std::uint32_t> patch_;  // number of each cell's patch
   FixedVector<std::uint32_t> queue_;

@@ -24,11 +24,6 @@ public:
   void push(std::uint64_t key, std::size_t index) { words_.push_back(key << index_bits_ | index); }
   void sort();
 
-  /// Puts a later word in the place of an earlier one.
-  void move(std::size_t from, std::size_t to) { words_[to] = words_[from]; }
-  /// @pre size no more than size()
-  void shrink(std::size_t size) { words_.resize(size); }
-
   std::size_t size() const { return words_.size(); }
   std::uint64_t key(std::size_t i) const { return words_[i] >> index_bits_; }
   std::uint32_t index(std::size_t i) const {

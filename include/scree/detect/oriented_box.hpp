@@ -23,7 +23,7 @@ struct OrientedBox {
       const float along = std::abs(dx * c + dy * s) - box.length / 2;
       const float across = std::abs(dy * c - dx * s) - box.width / 2;
       if (along <= 0 || across <= 0) return std::max({along, across, 0.0F});
-      return std::hypot(along, across);
+      return std::sqrt(along * along + across * across);
     };
   }
 };

@@ -28,10 +28,6 @@ public:
   /// max_points of them
   void build(PointView cloud, float radius);
 
-  /// Takes out the sorted points of which leave_out(index) is true.
-  template <class LeaveOut>
-  void remove(LeaveOut&& leave_out);
-
   std::size_t size() const { return sort_.size(); }
   /// The sorted points.
   const PointCloud& points() const { return points_; }
@@ -41,12 +37,7 @@ public:
   /// Calls visit(Run cell, std::span<const Run> neighbourhood) for each occupied cell; every point
   /// within the radius of build() of a point in the cell lies in the neighbourhood, and others.
   template <class Visit>
-  void for_each_cell(Visit&& visit) const {
-    for_each_cell([](Run) { return true; }, visit);
-  }
-  /// The same for the cells of which wants(Run cell) is true.
-  template <class Wants, class Visit>
-  void for_each_cell(Wants&& wants, Visit&& visit) const;
+  void for_each_cell(Visit&& visit) const;
 
   /// Calls visit(Run) for runs that together hold every point of the rectangle, and others.
   template <class Visit>
@@ -69,38 +60,20 @@ private:
   PointCloud points_;
 };
 
-template <class LeaveOut>
-void PlaneCells::remove(LeaveOut&& leave_out) {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < size(); ++i) {
-    if (leave_out(i)) continue;
-    sort_.move(i, kept);
-    points_.x[kept] = points_.x[i];
-    points_.y[kept] = points_.y[i];
-    points_.z[kept] = points_.z[i];
-    points_.reflectivity[kept] = points_.reflectivity[i];
-    ++kept;
-  }
-  sort_.shrink(kept);
-  points_.resize(kept);
-}
-
-template <class Wants, class Visit>
-void PlaneCells::for_each_cell(Wants&& wants, Visit&& visit) const {
+template <class Visit>
+void PlaneCells::for_each_cell(Visit&& visit) const {
   const auto count = static_cast<std::uint32_t>(size());
   std::array<Run, kRows> runs{};
   for (std::uint32_t begin = 0; begin < count;) {
     const std::uint64_t key = sort_.key(begin);
     std::uint32_t end = begin;
     while (end < count && sort_.key(end) == key) ++end;
-    if (wants(Run{begin, end})) {
-      for (std::size_t k = 0; k < kRows; ++k) {
-        const std::uint64_t center = key + k * columns_ - kReach * columns_;
-        runs[k].begin = advance(runs[k].begin, center - kReach);
-        runs[k].end = advance(std::max(runs[k].end, runs[k].begin), center + kReach + 1);
-      }
-      visit(Run{begin, end}, std::span<const Run>(runs));
+    for (std::size_t k = 0; k < kRows; ++k) {
+      const std::uint64_t center = key + k * columns_ - kReach * columns_;
+      runs[k].begin = advance(runs[k].begin, center - kReach);
+      runs[k].end = advance(std::max(runs[k].end, runs[k].begin), center + kReach + 1);
     }
+    visit(Run{begin, end}, std::span<const Run>(runs));
     begin = end;
   }
 }

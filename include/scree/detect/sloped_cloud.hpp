@@ -1,10 +1,7 @@
 #pragma once
 
 #include <cmath>
-#include <cstdint>
-#include <span>
 
-#include "scree/config/settings.hpp"
 #include "scree/core/fixed_vector.hpp"
 #include "scree/detect/elevation_gradient.hpp"
 #include "scree/detect/plane_cells.hpp"
@@ -27,22 +24,12 @@ struct SlopedCloud {
     return slope_x[i] * slope_x[i] + slope_y[i] * slope_y[i];
   }
 
-  /// @param wanted as ElevationGradient::compute() has it
   /// @pre the cells were built for gradient.reach()
-  void compute(const ElevationGradient& gradient, std::span<const std::uint8_t> wanted) {
+  void compute(const ElevationGradient& gradient) {
     slope_x.resize(size());
     slope_y.resize(size());
-    gradient.compute(cells, wanted, slope_x, slope_y);
+    gradient.compute(cells, slope_x, slope_y);
   }
 };
-
-/// @param shared_within metres, see ElevationGradient
-inline ElevationGradient gradient_of(const KernelSettings& kernel, double shared_within = 0) {
-  return {.spacing = static_cast<float>(kernel.spacing),
-          .radius = static_cast<float>(kernel.radius),
-          .bandwidth = static_cast<float>(kernel.bandwidth * kernel.radius),
-          .min_neighbours = kernel.neighbours,
-          .shared_within = static_cast<float>(shared_within)};
-}
 
 }  // namespace scree

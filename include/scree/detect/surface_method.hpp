@@ -11,11 +11,12 @@
 #include "scree/detect/candidate_points.hpp"
 #include "scree/detect/cluster_context.hpp"
 #include "scree/detect/clusters.hpp"
+#include "scree/detect/elevation_gradient.hpp"
 #include "scree/detect/euclidean_clusters.hpp"
+#include "scree/detect/gradient_raster.hpp"
 #include "scree/detect/ground_edges.hpp"
 #include "scree/detect/ground_surface.hpp"
 #include "scree/detect/hole_evidence.hpp"
-#include "scree/detect/sloped_cloud.hpp"
 #include "scree/detect/stage_counts.hpp"
 
 namespace scree {
@@ -39,20 +40,16 @@ public:
 
   // What each stage of the last call gave.
   const GroundSurface& ground() const { return surface_; }
-  const SlopedCloud& sloped() const { return sloped_; }
-  /// Free until the next call.
-  PlaneCells& cells() { return sloped_.cells; }
   const CandidatePoints& candidates() const { return candidates_; }
   ClusteredPoints result() const { return {kept_, clusters_}; }
   /// Where the ground ends or steps.
   const GroundEdges& edges() const { return edges_; }
 
 private:
-  void build_ground(const SeenCloud& cloud);
-  void leave_out_ground_below_edges();
-  void mark_points_off_ground();
+  void build_ground(const PointCloud& points, const SeenCloud& cloud);
+  void mark_points_off_ground(const PointCloud& points);
   void thin_candidates(StageCounts& counts);
-  void gather_candidates(StageCounts& counts);
+  void gather_candidates(const PointCloud& points, StageCounts& counts);
   void cluster(StageCounts& counts);
   void measure_clusters(const PointCloud& points);
   template <class Condition>
@@ -62,14 +59,15 @@ private:
 
   SurfaceSettings settings_;
   float highest_;  // metres above the ground
-  std::size_t max_points_, max_candidates_;
-  ElevationGradient gradient_;
+  std::size_t max_candidates_;
+  ElevationGradient kernel_;
 
-  SlopedCloud sloped_;
+  GradientRaster gradient_;
   GroundSurface surface_;
   BeamGrid beam_grid_;
-  FixedVector<float> height_;                // above the surface, of each sorted point
+  FixedVector<float> height_;                // above the surface, of each point
   FixedVector<std::uint8_t> is_off_ground_;  // for each of them
+  FixedVector<std::uint8_t> is_hidden_;      // from above, for each of them
   CandidatePoints candidates_, kept_;
   EuclideanClusters euclidean_;
   PointCloud split_;  // for Euclidean clustering

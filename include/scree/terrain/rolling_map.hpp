@@ -63,14 +63,8 @@ public:
   std::uint64_t dropped() const { return dropped_; }
 
 private:
-  /// Tiles of the plane, eight voxels wide; those far apart share a slot.
-  using TileGrid = ToroidalGrid<64, 1>;
   /// After this many beams went through a voxel since its last hit, what was there has moved away.
   static constexpr std::uint8_t kMostMisses = 8;
-  /// A voxel for the cloud.
-  struct Chosen {
-    std::uint32_t voxel, tile;
-  };
 
   VoxelKey key_of(const Eigen::Vector3f& point) const;
   void recenter(const Pose& pose);
@@ -92,7 +86,6 @@ private:
   bool has_confirmation(const MapVoxel& voxel) const;
   bool is_dust(const MapVoxel& voxel) const;
   void extract_cloud();
-  static std::uint32_t tile_of(const VoxelKey& key);
 
   MapSettings settings_;
   float inverse_;  // voxels a metre
@@ -106,9 +99,7 @@ private:
   std::size_t next_passing_ = 0;
   FixedVector<BeamCount> beams_;
   FixedVector<Eigen::Vector3f> origins_;  // of the beam that hit each last
-  FixedVector<std::uint32_t> places_;     // in the cloud, by tile
-  FixedVector<Chosen> chosen_;
-  std::uint32_t sweep_ = 0;  // number of the last sweep, from 1 on
+  std::uint32_t sweep_ = 0;               // number of the last sweep, from 1 on
   std::int64_t end_ns_ = 0, decayed_ns_ = 0;
   std::uint64_t dropped_ = 0;
 };

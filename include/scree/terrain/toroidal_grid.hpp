@@ -21,9 +21,20 @@ struct ToroidalGrid {
     std::int32_t x = 0, y = 0, z = 0;
     bool operator==(const CellIndex&) const = default;
 
-    /// Where its memory lies, below kSlots.
+    /// Where its memory lies, below kSlots. In a grid of some height cubes of 4 x 4 x 4 cells lie
+    /// together: who comes to one cell comes to those around it.
     std::size_t slot() const {
-      return (wrapped(z, kHeight) * kWidth + wrapped(y, kWidth)) * kWidth + wrapped(x, kWidth);
+      if constexpr (kHeight < kCube) {
+        return (wrapped(z, kHeight) * kWidth + wrapped(y, kWidth)) * kWidth + wrapped(x, kWidth);
+      } else {
+        constexpr int kAcross = kWidth / kCube;
+        const std::size_t cube =
+            (wrapped(z >> 2, kHeight / kCube) * kAcross + wrapped(y >> 2, kAcross)) * kAcross +
+            wrapped(x >> 2, kAcross);
+        const std::size_t inside =
+            (wrapped(z, kCube) * kCube + wrapped(y, kCube)) * kCube + wrapped(x, kCube);
+        return cube * (kCube * kCube * kCube) + inside;
+      }
     }
   };
 
@@ -34,6 +45,8 @@ struct ToroidalGrid {
   }
 
 private:
+  static constexpr int kCube = 4;
+
   static std::size_t wrapped(std::int32_t value, int size) {
     return static_cast<std::size_t>(value & (size - 1));
   }

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 #include "scree/core/beam_count.hpp"
 #include "scree/core/fixed_vector.hpp"
@@ -64,27 +65,34 @@ public:
 
   /// Null where there is none.
   const MapVoxel* find(const VoxelKey& key) const {
+    if ((masks_[block_of(key)] >> bit_of(key) & 1) == 0) return nullptr;
     const std::uint32_t number = numbers_[slot_of(key)];
     return number == 0 ? nullptr : &voxels_[number - 1];
   }
   MapVoxel* find(const VoxelKey& key) {
-    const std::uint32_t number = numbers_[slot_of(key)];
-    return number == 0 ? nullptr : &voxels_[number - 1];
+    return const_cast<MapVoxel*>(std::as_const(*this).find(key));
   }
   /// Null when full.
   MapVoxel* find_or_add(const VoxelKey& key);
+  /// Has the processor fetch what find_or_add() will read.
+  void prefetch_index(const VoxelKey& key) const { __builtin_prefetch(&numbers_[home_slot(key)]); }
+  void prefetch_voxel(const VoxelKey& key) const {
+    const std::uint32_t number = numbers_[home_slot(key)];
+    if (number != 0) __builtin_prefetch(&voxels_[number - 1]);
+  }
   /// Removes a voxel; the last one takes its index.
   void erase(std::size_t index);
   /// Moves all keys.
   void shift(int dx, int dy, int dz);
 
   /// The edge of the largest cube around a key, among those of 16, 4 and 1 voxels, that surely
-  /// holds none; 0 where there is one. Most of a beam's way is empty, and is passed quickly by
+  /// holds none; 0 where there may be one. Most of a beam's way is empty, and is passed quickly by
   /// this.
   int empty_edge(const VoxelKey& key) const {
     if (in_region_[region_of(key)] == 0) return 16;
-    if (in_block_[block_of(key)] == 0) return 4;
-    return numbers_[slot_of(key)] == 0 ? 1 : 0;
+    const std::uint64_t mask = masks_[block_of(key)];
+    if (mask == 0) return 4;
+    return (mask >> bit_of(key) & 1) == 0 ? 1 : 0;
   }
 
 private:
@@ -94,6 +102,10 @@ private:
 
   static std::size_t block_of(const VoxelKey& key) {
     return BlockGrid::CellIndex{key.x >> 2, key.y >> 2, key.z >> 2}.slot();
+  }
+  /// The bit of a voxel in its block's mask.
+  static unsigned bit_of(const VoxelKey& key) {
+    return static_cast<unsigned>((key.x & 3) | (key.y & 3) << 2 | (key.z & 3) << 4);
   }
   static std::size_t region_of(const VoxelKey& key) {
     return RegionGrid::CellIndex{key.x >> 4, key.y >> 4, key.z >> 4}.slot();
@@ -106,22 +118,24 @@ private:
     return slot;
   }
   void index(std::size_t voxel, std::size_t slot);
+  void count(const VoxelKey& key);
   void clear_index();
 
   FixedVector<MapVoxel> voxels_;
   FixedVector<std::uint32_t> numbers_;  // by slot: the voxel's index plus one, 0 is free
   std::size_t mask_;
+  FixedVector<std::uint64_t> masks_;      // of each block the voxels that there may be
   FixedVector<std::uint16_t> in_block_;   // voxels, by block of 4 x 4 x 4
   FixedVector<std::uint16_t> in_region_;  // voxels, by region of 16 x 16 x 16
 };
 
+/// Sixteen voxels side by side have sixteen slots side by side: a line of a processor's cache.
 inline std::size_t VoxelHashMap::home_slot(const VoxelKey& key) const {
   constexpr std::uint64_t kGoldenRatio = 0x9E3779B97F4A7C15U;  // Fibonacci hashing: 2^64 / phi
-  const auto wide = [](std::int16_t value) {
-    return std::uint64_t{static_cast<std::uint16_t>(value)};
-  };
-  const std::uint64_t word = wide(key.x) | wide(key.y) << 16U | wide(key.z) << 32U;
-  return static_cast<std::size_t>(word * kGoldenRatio >> 32U) & mask_;
+  const auto wide = [](int value) { return std::uint64_t{static_cast<std::uint16_t>(value)}; };
+  const std::uint64_t word = wide(key.x >> 2) | wide(key.y >> 1) << 16U | wide(key.z >> 1) << 32U;
+  const unsigned inside = (key.x & 3U) | (key.y & 1U) << 2U | (key.z & 1U) << 3U;
+  return static_cast<std::size_t>((word * kGoldenRatio >> 32U) << 4U | inside) & mask_;
 }
 
 }  // namespace scree

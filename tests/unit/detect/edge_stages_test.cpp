@@ -1,35 +1,16 @@
 // Gradient and suppression against the paper's formulas written out plainly, in double.
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
-#include <set>
 #include <vector>
 
 #include "detect/clouds.hpp"
+#include "detect/slope_by_formula.hpp"
 #include "scree/detect/elevation_gradient.hpp"
 #include "scree/detect/suppression.hpp"
 
 namespace scree {
 namespace {
-
-/// Eq. 3-4 at one position; nothing where fewer than `least` points lie within r.
-std::optional<double> kernel_estimate(const PointCloud& cloud, double x, double y, double r,
-                                      double bandwidth, int least) {
-  double weights = 0, sum = 0;
-  int count = 0;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const double dx = cloud.x[i] - x, dy = cloud.y[i] - y;
-    if (dx * dx + dy * dy > r * r) continue;
-    const double k = 0.6171 * std::exp(-0.5 * std::pow(dx / bandwidth, 2)) *
-                     std::exp(-0.5 * std::pow(dy / bandwidth, 2));
-    weights += k;
-    sum += k * cloud.z[i];
-    ++count;
-  }
-  if (count < least) return std::nullopt;
-  return sum / weights;
-}
 
 struct Slopes {
   std::vector<float> x, y;
@@ -37,7 +18,7 @@ struct Slopes {
 
 Slopes slopes_of(const PlaneCells& cells, const ElevationGradient& gradient) {
   Slopes slopes{std::vector<float>(cells.size()), std::vector<float>(cells.size())};
-  gradient.compute(cells, {}, slopes.x, slopes.y);
+  gradient.compute(cells, slopes.x, slopes.y);
   return slopes;
 }
 
@@ -55,27 +36,14 @@ TEST_P(Gradient, IsTheFormulaOfThePaper) {
   std::size_t known = 0, on_the_rim = 0;
   for (std::size_t i = 0; i < cells.size(); i += 7) {
     const double x = cells.points().x[i], y = cells.points().y[i];
-    std::array<std::array<std::optional<double>, 3>, 3> z;
-    bool complete = true;
-    for (std::size_t row = 0; row < 3; ++row) {
-      for (std::size_t column = 0; column < 3; ++column) {
-        if (row == 1 && column == 1) continue;
-        z[row][column] = kernel_estimate(cloud, x + (double(column) - 1) * d,
-                                         y + (double(row) - 1) * d, r, bandwidth, least);
-        complete = complete && z[row][column];
-      }
-    }
-    if (!complete) {
+    const auto slope = test::slope_by_formula(cloud, x, y, {d, r, bandwidth, least});
+    if (!slope) {
       EXPECT_TRUE(std::isnan(slopes.x[i]) && std::isnan(slopes.y[i]));
       continue;
     }
     ++known;
-    const double slope_x =
-        (*z[0][2] + 2 * *z[1][2] + *z[2][2] - *z[0][0] - 2 * *z[1][0] - *z[2][0]) / (8 * d);
-    const double slope_y =
-        (*z[2][0] + 2 * *z[2][1] + *z[2][2] - *z[0][0] - 2 * *z[0][1] - *z[0][2]) / (8 * d);
     // A neighbour on the rim of a disc may fall on either side in float.
-    if (std::abs(slopes.x[i] - slope_x) > 1e-4 || std::abs(slopes.y[i] - slope_y) > 1e-4) {
+    if (std::abs(slopes.x[i] - slope->x()) > 1e-4 || std::abs(slopes.y[i] - slope->y()) > 1e-4) {
       ++on_the_rim;
     }
   }
@@ -105,90 +73,6 @@ TEST(Gradient, OfAPlaneIsItsSlope) {
   EXPECT_GT(known, 10'000);
   EXPECT_NEAR(sum_x / known, 0.3, 0.003);
   EXPECT_NEAR(sum_y / known, -0.1, 0.003);
-}
-
-TEST(Gradient, PointsAboveOneAnotherMayShareIt) {
-  // Every point has three more above it, some millimetres aside.
-  const PointCloud plane = test::scattered(5'000, 2, 0);
-  PointCloud cloud(4 * plane.size());
-  for (std::size_t i = 0; i < plane.size(); ++i) {
-    const float ground = 0.4F * std::sin(2 * plane.x[i]) * plane.y[i];
-    for (int k = 0; k < 4; ++k) {
-      const float up = static_cast<float>(k);
-      cloud.push_back(plane.x[i] + 0.002F * up, plane.y[i], ground + 0.1F * up, 0);
-    }
-  }
-  ElevationGradient gradient{0.1F, 0.11F, 0.22F, 1};
-  PlaneCells cells(cloud.size());
-  cells.build(cloud, gradient.reach());
-  const Slopes own = slopes_of(cells, gradient);
-  gradient.shared_within = 0.01F;
-  const Slopes shared = slopes_of(cells, gradient);
-  std::size_t known = 0;
-  double difference = 0;
-  std::set<float> distinct_own, distinct_shared;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    if (std::isnan(own.x[i]) || std::isnan(shared.x[i])) continue;
-    ++known;
-    difference += std::hypot(own.x[i] - shared.x[i], own.y[i] - shared.y[i]);
-    distinct_own.insert(own.x[i]);
-    distinct_shared.insert(shared.x[i]);
-  }
-  ASSERT_GT(known, 10'000U);
-  EXPECT_LT(difference / static_cast<double>(known), 0.03);
-  EXPECT_LT(distinct_shared.size(), 0.4 * static_cast<double>(distinct_own.size()));
-
-  // What is not wanted lends its slope to nobody.
-  std::vector<std::uint8_t> wanted(cells.size(), 0);
-  for (std::size_t i = 0; i < wanted.size(); i += 3) wanted[i] = 1;
-  Slopes some{std::vector<float>(cells.size()), std::vector<float>(cells.size())};
-  gradient.compute(cells, wanted, some.x, some.y);
-  std::size_t asked = 0, alike = 0;
-  for (std::size_t i = 0; i < wanted.size(); ++i) {
-    if (wanted[i] == 0) {
-      ASSERT_TRUE(std::isnan(some.x[i]));
-    } else if (!std::isnan(own.x[i])) {
-      ++asked;
-      alike += std::hypot(some.x[i] - own.x[i], some.y[i] - own.y[i]) < 0.1F ? 1U : 0U;
-    }
-  }
-  EXPECT_GT(asked, known / 4);
-  EXPECT_GT(alike, 0.9 * static_cast<double>(asked));
-}
-
-TEST(PlaneCells, WithoutSomePointsTheyAreAsBuiltFromTheOthers) {
-  const PointCloud cloud = test::scattered(5'000, 2, 1);
-  const auto leave_out = [](float x, float z) { return z > 0.2F || x < -1.5F; };
-  PointCloud others(cloud.size());
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (leave_out(cloud.x[i], cloud.z[i])) continue;
-    others.push_back(cloud.x[i], cloud.y[i], cloud.z[i], cloud.reflectivity[i]);
-  }
-  PlaneCells cells(cloud.size()), expected(cloud.size());
-  cells.build(cloud, 0.1F);
-  expected.build(others, 0.1F);
-  cells.remove([&](std::size_t i) { return leave_out(cells.points().x[i], cells.points().z[i]); });
-  const auto points_of = [](const PlaneCells& of) {
-    const PointCloud& at = of.points();
-    std::vector<std::array<float, 4>> points;
-    for (std::size_t i = 0; i < of.size(); ++i) {
-      points.push_back({at.x[i], at.y[i], at.z[i], at.reflectivity[i]});
-    }
-    return points;
-  };
-  const auto runs_of = [](const PlaneCells& of) {
-    std::vector<std::uint32_t> ends;
-    of.for_each_cell([&](auto cell, auto neighbourhood) {
-      ends.insert(ends.end(), {cell.begin, cell.end});
-      for (const auto& run : neighbourhood) ends.insert(ends.end(), {run.begin, run.end});
-    });
-    return ends;
-  };
-  EXPECT_EQ(points_of(cells), points_of(expected));
-  EXPECT_GT(cells.size(), 1'000U);
-  EXPECT_EQ(runs_of(cells), runs_of(expected));
-  cells.remove([](std::size_t) { return true; });
-  EXPECT_EQ(cells.size(), 0U);
 }
 
 TEST(Gradient, IsUnknownNotZeroWhereNeighboursLack) {

@@ -140,7 +140,7 @@ CandidatePoints with_slopes(const PointCloud& cloud) {
   PlaneCells cells(cloud.size());
   cells.build(cloud, gradient.reach());
   std::vector<float> slope_x(cloud.size()), slope_y(cloud.size());
-  gradient.compute(cells, {}, slope_x, slope_y);
+  gradient.compute(cells, slope_x, slope_y);
   CandidatePoints edges(cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (!std::isnan(slope_x[i])) edges.push_back(cells.points(), i, slope_x[i], slope_y[i]);

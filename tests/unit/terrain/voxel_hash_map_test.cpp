@@ -32,6 +32,19 @@ TEST(VoxelHashMap, KnowsTheLargestCubeAroundAPlaceThatIsEmpty) {
   EXPECT_EQ(map.empty_edge({-1, 1, 1}), 16);
 }
 
+TEST(VoxelHashMap, VoxelsFarOffMayGoWithoutHidingOthers) {
+  VoxelHashMap map(10);
+  map.find_or_add({1, 1, 1});
+  map.find_or_add({513, 1, 1});  // the same place in the masks
+  map.erase(0);
+  EXPECT_EQ(map.find({1, 1, 1}), nullptr);
+  EXPECT_NE(map.find({513, 1, 1}), nullptr);
+  EXPECT_EQ(map.empty_edge({513, 1, 1}), 0);
+  map.erase(0);
+  EXPECT_EQ(map.find({513, 1, 1}), nullptr);
+  EXPECT_GT(map.empty_edge({513, 1, 1}), 0);
+}
+
 TEST(VoxelHashMap, HoldsWhatAPlainMapHolds) {
   std::mt19937 random(3);
   std::uniform_int_distribution<int> number(-20, 20), choice(0, 99);

@@ -75,15 +75,17 @@ void write_stages(const Detector& detector, PointView input, const std::filesyst
   const ClusteredPoints found = detector.clustered();
   folder.write("0_input.pcd", input);
   folder.write("1_voxel_grid.pcd", detector.points());
-  detector.visit_method([&](const auto& method) {
-    const SlopedCloud& sloped = method.sloped();
+  const EdgeMethod* edges = detector.edge_method();
+  if (edges != nullptr) {
+    const SlopedCloud& sloped = edges->sloped();
     folder.write("2_slope.pcd", with_value(sloped.points(), [&](std::size_t i) {
                    return std::hypot(sloped.slope_x[i], sloped.slope_y[i]);
                  }));
+  }
+  detector.visit_method([&](const auto& method) {
     folder.write("3_candidates.pcd", with_slope(method.candidates()));
   });
   folder.write("4_kept.pcd", with_slope(found.points));
-  const EdgeMethod* edges = detector.edge_method();
   if (edges != nullptr && edges->supervoxels() != nullptr) {
     write_supervoxels(folder, *edges->supervoxels(), found.points.points);
   }

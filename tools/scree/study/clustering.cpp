@@ -15,16 +15,13 @@ constexpr int kColumns = 3;  // of the picture
 /// The paper's share of points that are steep enough (fig. 11, 12).
 constexpr double kPaperEdgeShare = 82'242.0 / 413'591;
 
-/// The threshold that keeps this share of a cloud's points. @pre the detector has just seen it
-double threshold_for(const Detector& detector, double share) {
+/// The threshold that keeps this share of a cloud's points.
+double threshold_for(const SlopedCloud& sloped, double share) {
   std::vector<float> slopes;
-  detector.visit_method([&](const auto& method) {
-    const SlopedCloud& sloped = method.sloped();
-    for (std::size_t i = 0; i < sloped.size(); ++i) {
-      if (!sloped.is_known(i)) continue;
-      slopes.push_back(std::hypot(sloped.slope_x[i], sloped.slope_y[i]));
-    }
-  });
+  for (std::size_t i = 0; i < sloped.size(); ++i) {
+    if (!sloped.is_known(i)) continue;
+    slopes.push_back(std::hypot(sloped.slope_x[i], sloped.slope_y[i]));
+  }
   if (slopes.empty()) return 0;
   const auto rank =
       static_cast<std::ptrdiff_t>((1 - share) * static_cast<double>(slopes.size() - 1));
@@ -129,7 +126,7 @@ void study_clustering(const StudyTask& task) {
         if (w >= kFirstOfPaperShare) settings.edges.threshold = threshold;
         Detector detector = detector_of(settings, task);
         list_of(detector, world.cloud);
-        if (w == 0) threshold = threshold_for(detector, kPaperEdgeShare);
+        if (w == 0) threshold = threshold_for(detector.edge_method()->sloped(), kPaperEdgeShare);
         compare(detector.clustered(), world, fits[w]);
         if (i == 0) draw(page, w, detector.clustered(), world, ways[w].name);
       }

@@ -7,7 +7,6 @@
 #include "scree/detect/edge_method.hpp"
 #include "scree/detect/isolated_points.hpp"
 #include "scree/detect/label.hpp"
-#include "scree/detect/overhangs.hpp"
 #include "scree/detect/split_by_sign.hpp"
 #include "scree/detect/surface_method.hpp"
 
@@ -20,6 +19,7 @@ SurfaceRung::SurfaceRung(const DetectSettings& settings, const DetectorLimits& l
       gradient_(gradient_of(settings.edges.kernel)),
       voxel_grid_(limits.points),
       points_(limits.points),
+      overhangs_(limits.ground_cells),
       sloped_(limits.points),
       surface_(limits.points, limits.ground_cells),
       beam_grid_(limits.ground_cells),
@@ -39,7 +39,7 @@ ClusteredPoints SurfaceRung::find(PointView cloud) {
   // Nothing is known of the beams of a cloud, so all is solid.
   beam_grid_.build(cloud, {}, surface_, static_cast<float>(settings_.surface.body_height),
                    static_cast<float>(settings_.clearance));
-  sloped_.compute(gradient_, {});
+  sloped_.compute(gradient_);
   gather_candidates();
   cluster();
   measure_clusters();
@@ -49,7 +49,7 @@ ClusteredPoints SurfaceRung::find(PointView cloud) {
 void SurfaceRung::take_in(PointView cloud) {
   const auto leaf_size = static_cast<float>(settings_.leaf_size);
   voxel_grid_.filter(cloud, leaf_size, reach_of_cells(leaf_size, points_.capacity(), 3), points_);
-  remove_overhangs(points_, static_cast<float>(settings_.clearance), sloped_.cells);
+  overhangs_.remove(points_, static_cast<float>(settings_.clearance));
 }
 
 void SurfaceRung::gather_candidates() {

@@ -7,6 +7,7 @@
 #include "scree/detect/clusters.hpp"
 #include "scree/detect/euclidean_clusters.hpp"
 #include "scree/detect/ground_surface.hpp"
+#include "scree/detect/overhangs.hpp"
 #include "scree/detect/sloped_cloud.hpp"
 #include "scree/detect/supervoxels.hpp"
 #include "scree/detect/voxel_grid.hpp"
@@ -36,6 +37,7 @@ private:
   ElevationGradient gradient_;
   VoxelGrid voxel_grid_;
   PointCloud points_;
+  Overhangs overhangs_;
   SlopedCloud sloped_;
   GroundSurface surface_;
   BeamGrid beam_grid_;

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "scree/core/fixed_vector.hpp"
+#include "scree/core/point_cloud.hpp"
+#include "scree/detect/elevation_gradient.hpp"
+
+namespace scree {
+
+struct Slope {
+  float x = std::numeric_limits<float>::quiet_NaN();  ///< metres per metre; NaN: not known
+  float y = std::numeric_limits<float>::quiet_NaN();
+};
+
+/// The Gaussian-kernel Sobel operator (paper eq. 1-4) at the places of a raster as wide as the
+/// operator's positions are apart. A place's eight positions are places, too, so that each point
+/// enters a few sums once, and no pairs of points are looked at.
+class GradientRaster {
+public:
+  explicit GradientRaster(std::size_t max_places) : places_(max_places) {}
+
+  /// Sums the kernel's weights and the weighed elevations at each place.
+  /// @param points finite
+  /// @param left_out for each of them whether it does not count; 0: it does
+  /// @param gradient where the points need more than max_places, its lengths are doubled until they
+  /// do not
+  void build(PointView points, std::span<const std::uint8_t> left_out,
+             const ElevationGradient& gradient);
+
+  /// Slope of the elevation at the place nearest to a point of build().
+  Slope at(float x, float y) const;
+
+private:
+  struct Place {
+    float weights = 0, elevations = 0;
+    std::int32_t points = 0;
+  };
+
+  void lay_out(PointView points, float spacing);
+  void add(float u, float v, float z);
+
+  float low_x_ = 0, low_y_ = 0, spacing_ = 1, inverse_ = 1;
+  float radius_ = 0, exponent_ = 0;  // of the kernel, in units of spacing_
+  int squarings_ = 0;
+  std::int32_t min_neighbours_ = 1;
+  std::int32_t columns_ = 0, rows_ = 0;
+  FixedVector<Place> places_;
+};
+
+}  // namespace scree

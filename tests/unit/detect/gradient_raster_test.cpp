@@ -1,0 +1,83 @@
+#include "scree/detect/gradient_raster.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "detect/clouds.hpp"
+#include "detect/slope_by_formula.hpp"
+
+namespace scree {
+namespace {
+
+std::vector<std::uint8_t> none_of(const PointCloud& cloud) {
+  return std::vector<std::uint8_t>(cloud.size(), 0);
+}
+
+class GradientRasterOf : public testing::TestWithParam<double> {};  // bandwidth in radii
+
+TEST_P(GradientRasterOf, IsTheFormulaOfThePaperAtItsPlaces) {
+  const PointCloud cloud = test::bump_and_bowl(4000);
+  const double d = 0.2, r = 0.23, bandwidth = GetParam() * r;
+  const int least = 2;
+  GradientRaster raster(10'000);
+  raster.build(cloud, none_of(cloud), {float(d), float(r), float(bandwidth), least});
+  std::size_t known = 0, on_the_rim = 0;
+  for (std::size_t i = 0; i < cloud.size(); i += 7) {
+    // Places are whole multiples of d.
+    const auto expected =
+        test::slope_by_formula(cloud, d * std::round(cloud.x[i] / d),
+                               d * std::round(cloud.y[i] / d), {d, r, bandwidth, least});
+    const Slope slope = raster.at(cloud.x[i], cloud.y[i]);
+    if (std::isnan(slope.x) == expected.has_value()) {
+      ++on_the_rim;
+      continue;
+    }
+    if (!expected) continue;
+    ++known;
+    // A neighbour on the rim of a disc may fall on either side in float.
+    if (std::abs(slope.x - expected->x()) > 1e-4 || std::abs(slope.y - expected->y()) > 1e-4) {
+      ++on_the_rim;
+    }
+  }
+  EXPECT_GT(known, 300U);
+  EXPECT_LE(on_the_rim, known / 100);
+}
+
+INSTANTIATE_TEST_SUITE_P(Bandwidths, GradientRasterOf, testing::Values(2.0, 1.0, 0.3, 0.1));
+
+TEST(GradientRaster, DoesNotCountWhatIsLeftOut) {
+  PointCloud cloud = test::scattered(20'000, 2, 0);
+  std::vector<std::uint8_t> left_out(cloud.size(), 0);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    left_out[i] = i % 2 == 0 ? 1 : 0;
+    cloud.z[i] = left_out[i] != 0 ? cloud.x[i] * 5 : cloud.x[i] * 0.3F;
+  }
+  GradientRaster raster(10'000);
+  raster.build(cloud, left_out, {0.1F, 0.11F, 0.22F, 1});
+  const Slope slope = raster.at(0, 0);
+  EXPECT_NEAR(slope.x, 0.3, 0.03);
+  EXPECT_NEAR(slope.y, 0, 0.03);
+}
+
+TEST(GradientRaster, IsNotKnownWherePointsLack) {
+  PointCloud cloud(3);
+  for (const float x : {0.0F, 0.1F, 5.0F}) cloud.push_back(x, 0, 0, 0);
+  GradientRaster raster(10'000);
+  raster.build(cloud, none_of(cloud), {0.1F, 0.11F, 0.22F, 1});
+  for (const float x : cloud.x) EXPECT_TRUE(std::isnan(raster.at(x, 0).x));
+  raster.build(PointCloud(), {}, {0.1F, 0.11F, 0.22F, 1});
+}
+
+TEST(GradientRaster, GrowsCoarserWhereACloudIsTooWideForIt) {
+  PointCloud cloud = test::scattered(20'000, 5, 0);
+  for (std::size_t i = 0; i < cloud.size(); ++i) cloud.z[i] = 0.4F * cloud.x[i] - 0.2F * cloud.y[i];
+  GradientRaster raster(1000);  // 10 m in steps of 0.1 m would be ten times as many
+  raster.build(cloud, none_of(cloud), {0.1F, 0.11F, 0.22F, 1});
+  EXPECT_NEAR(raster.at(1, -1).x, 0.4, 0.03);
+  EXPECT_NEAR(raster.at(1, -1).y, -0.2, 0.03);
+}
+
+}  // namespace
+}  // namespace scree
