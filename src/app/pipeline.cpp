@@ -147,7 +147,9 @@ void Pipeline::report_setup() {
 
 void Pipeline::detect_in_map() {
   const RollingMap& map = mapper_->map();
-  tracker_.remove_if([this](const Obstacle& obstacle) { return mapper_->remove_left(obstacle); });
+  tracker_.remove_if([this](const Obstacle& obstacle) {
+    return mapper_->remove_left(obstacle, moving_tracker_.was_left(obstacle));
+  });
   SeenCloud cloud = map.seen_cloud();
   cloud.robot = (mapper_->pose().translation - map.origin()).head<2>().cast<float>();
   map_detector_.detect(cloud, found_, timer_);

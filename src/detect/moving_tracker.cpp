@@ -14,6 +14,7 @@ constexpr double kAcceleration = 2;    // m/s^2, of people who start and stop
 constexpr double kInitialSpeed = 1.5;  // m/s, standard deviation
 constexpr std::uint32_t kLeastFound = 2;
 constexpr double kRemembered = 1.5;  // seconds out of sight
+constexpr double kLeastWay = 0.2;    // metres from where it was seen first: then it moves
 
 }  // namespace
 
@@ -125,6 +126,18 @@ void MovingTracker::add_to(FixedVector<Obstacle>& list, Tracker& standing) {
   }
 }
 
+bool MovingTracker::was_left(const Obstacle& standing) const {
+  constexpr double kBeside = 0.4;  // metres from its way
+  const Eigen::Vector2d place = standing.center.head<2>();
+  return std::ranges::any_of(tracks_, [&](const Track& track) {
+    const Eigen::Vector2d way = track.obstacle.center.head<2>() - track.start;
+    if (track.obstacle.id == 0 || way.norm() < kLeastWay) return false;
+    if (distance_to_box(track.obstacle, standing.center) == 0) return false;
+    const double share = std::clamp((place - track.start).dot(way) / way.squaredNorm(), 0.0, 1.0);
+    return (place - track.start - share * way).norm() < kBeside;
+  });
+}
+
 /// What moved and stands now has come into the map.
 void MovingTracker::hand_over(FixedVector<Obstacle>& list, Tracker& standing) {
   constexpr double kNear = 0.3;  // metres
@@ -144,7 +157,7 @@ void MovingTracker::hand_over(FixedVector<Obstacle>& list, Tracker& standing) {
 
 /// As it is published: with a velocity only where it surely moves.
 Obstacle MovingTracker::published(const Track& track) {
-  constexpr double kLeastSpeed = 0.25, kLeastWay = 0.2;  // m/s, metres
+  constexpr double kLeastSpeed = 0.25;  // m/s
   Obstacle obstacle = track.obstacle;
   const double deviation = std::sqrt(track.velocity_variance);
   const double way = (obstacle.center.head<2>() - track.start).norm();

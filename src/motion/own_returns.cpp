@@ -11,7 +11,7 @@ constexpr float kBorder = 2.35F;       // what comes this near to it goes on bey
 constexpr float kLowest = 0.15F;       // metres above the origin of base
 constexpr float kFarTolerance = 0.1F;  // metres
 constexpr double kRoom = 0.08F;        // around what was found: noise, and what lies between beams
-constexpr float kLeastWay = 1.5F;      // metres
+constexpr float kLeastWay = 2.5F;      // metres: rough ground may keep its distance for 1.5 m
 
 // Directions: 2 degrees apart in height, as the lidar's lasers, and 1.8 aside.
 constexpr std::size_t kRows = 16, kColumns = 200, kBins = kRows * kColumns;
@@ -85,13 +85,14 @@ bool OwnReturns::end_sweep(float way) {
   for (Bin& bin : bins_) {
     const bool is_far = bin.range > kReach;
     const float change = bin.range - bin.kept;
-    if (bin.range > 0 && std::abs(change) < (is_far ? kFarTolerance : kTolerance)) {
-      // A far one is compared with the first, or a slow change would go unseen.
+    // What is kept is held against the first, or a slow change would go unseen.
+    const bool has_drifted = std::abs(bin.kept - bin.first) >= kTolerance;
+    if (bin.range > 0 && std::abs(change) < (is_far ? kFarTolerance : kTolerance) && !has_drifted) {
       if (!is_far) bin.kept += kNewest * change;
       bin.way += way;
       if (bin.sweeps < UINT8_MAX) ++bin.sweeps;
     } else {
-      bin.kept = bin.range;
+      bin.kept = bin.first = bin.range;
       bin.way = 0;
       bin.sweeps = 0;
     }

@@ -43,6 +43,9 @@ public:
   /// @param list of what stands, in the map's frame
   /// @param standing that made the list
   void add_to(FixedVector<Obstacle>& list, Tracker& standing);
+  /// Whether something that moves came through the place of an obstacle of the map, and has left
+  /// it.
+  bool was_left(const Obstacle& standing) const;
 
   std::span<const Track> tracks() const { return {tracks_.data(), tracks_.size()}; }
   /// Things that no track had room for, and obstacles that did not fit into the list.

@@ -49,6 +49,7 @@ private:
         Eigen::Vector3f::Zero();  ///< return of this sweep, in the lidar's frame
     float range = 0;              ///< of it, metres; 0: none
     float kept = 0;               ///< the range that it keeps, metres
+    float first = 0;              ///< the first one of those, metres
     float way = 0;                ///< that the robot moved meanwhile, metres
     std::uint8_t sweeps = 0;      ///< in which it was kept, up to 255
   };

@@ -49,7 +49,9 @@ public:
   const PoseFilter& filter() const { return filter_; }
   const RollingMap& map() const { return map_; }
   /// As RollingMap::remove_left().
-  bool remove_left(const Obstacle& obstacle) { return map_.remove_left(obstacle); }
+  bool remove_left(const Obstacle& obstacle, bool was_left) {
+    return map_.remove_left(obstacle, was_left);
+  }
   const MotionStep& step() const { return step_; }
   const Registration::Outcome& registration() const { return outcome_; }
   /// Whether the map began anew with the last sweep, because its frame was found wrong or

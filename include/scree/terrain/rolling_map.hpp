@@ -53,8 +53,10 @@ public:
   /// Removes what was seen in an obstacle's box when it has left: beams go through nearly
   /// everywhere in it. To be called after a sweep was added; the cloud is without it from then on.
   /// @param obstacle in the map's frame; a low one is never said to have left
+  /// @param was_left whether something that moves came from there: then what is left of it is
+  /// looked at voxel by voxel
   /// @return whether it has left
-  bool remove_left(const Obstacle& obstacle);
+  bool remove_left(const Obstacle& obstacle, bool was_left = false);
   /// In the map's frame.
   const FreeSpace& free_space() const { return free_space_; }
 
@@ -65,6 +67,20 @@ public:
 private:
   /// After this many beams went through a voxel since its last hit, what was there has moved away.
   static constexpr std::uint8_t kMostMisses = 8;
+
+  /// Places where something was, and beams end or go through.
+  struct Places {
+    int there = 0, gone = 0;
+
+    void add(FreeSpace::Presence presence) {
+      there += presence == FreeSpace::Presence::there ? 1 : 0;
+      gone += presence == FreeSpace::Presence::gone ? 1 : 0;
+    }
+    bool are_empty() const {
+      constexpr int kFewest = 4, kMostThere = 5;  // gone through, and how many for each one left
+      return gone >= kFewest && kMostThere * there <= gone;
+    }
+  };
 
   VoxelKey key_of(const Eigen::Vector3f& point) const;
   void recenter(const Pose& pose);
@@ -81,7 +97,8 @@ private:
   void add_passing_beam(const Eigen::Vector3f& origin, const Eigen::Vector3f& beam);
   void fit_reach();
   void prune();
-  bool has_left(const Obstacle& obstacle) const;
+  Places places_in(const Obstacle& obstacle) const;
+  Places voxels_in(const Obstacle& obstacle) const;
   bool confirm(MapVoxel& voxel) const;
   bool has_confirmation(const MapVoxel& voxel) const;
   bool is_dust(const MapVoxel& voxel) const;

@@ -62,6 +62,8 @@ public:
   MapVoxel& operator[](std::size_t index) { return voxels_[index]; }
   MapVoxel* begin() { return voxels_.begin(); }
   MapVoxel* end() { return voxels_.end(); }
+  const MapVoxel* begin() const { return voxels_.begin(); }
+  const MapVoxel* end() const { return voxels_.end(); }
 
   /// Null where there is none.
   const MapVoxel* find(const VoxelKey& key) const {

@@ -97,6 +97,20 @@ TEST_F(MovingTrackerTest, WhatStandsBesideItsWayStays) {
   }
 }
 
+TEST_F(MovingTrackerTest, KnowsWhatItCameFrom) {
+  const Obstacle left = person(5.1, 0), there = person(5, 1), beside = person(6, 0.5);
+  update({person(5, 0)});
+  for (int i = 1; i < 11; ++i) {
+    EXPECT_FALSE(tracker_.was_left(left)) << i;
+    if (i == 3) break;
+    update({person(5, 0.05 * i)});
+  }
+  for (int i = 3; i < 21; ++i) update({person(5, 0.05 * i)});
+  EXPECT_TRUE(tracker_.was_left(left));
+  EXPECT_FALSE(tracker_.was_left(there)) << "it is there";
+  EXPECT_FALSE(tracker_.was_left(beside));
+}
+
 TEST_F(MovingTrackerTest, MoreThanItHasRoomForAreCounted) {
   std::vector<Obstacle> found;
   for (int i = 0; i < 20; ++i) found.push_back(person(5, 2 * i));
