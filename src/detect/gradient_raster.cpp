@@ -61,7 +61,7 @@ void GradientRaster::add(float u, float v, float z) {
       if (square > radius_ * radius_) continue;
       float weight = square * exponent_;
       ShortExp::replace(weight, squarings_);
-      Place& place = places_[static_cast<std::size_t>(row * columns_ + column)];
+      Place& place = places_[index_of(column, row)];
       place.weights += weight;
       place.elevations += weight * z;
       ++place.points;
@@ -70,9 +70,10 @@ void GradientRaster::add(float u, float v, float z) {
 }
 
 Slope GradientRaster::at(float x, float y) const {
-  const auto column = static_cast<std::int32_t>((x - low_x_) * inverse_ + 0.5F);
-  const auto row = static_cast<std::int32_t>((y - low_y_) * inverse_ + 0.5F);
-  const Place* const middle = places_.data() + row * columns_ + column;
+  constexpr float kHalf = 0.5F;  // rounds to the nearest place
+  const auto column = static_cast<std::int32_t>((x - low_x_) * inverse_ + kHalf);
+  const auto row = static_cast<std::int32_t>((y - low_y_) * inverse_ + kHalf);
+  const Place* const middle = places_.data() + index_of(column, row);
   const std::ptrdiff_t step = columns_;
   float rise_x = 0, rise_y = 0;
   for (std::ptrdiff_t v = -1; v <= 1; ++v) {

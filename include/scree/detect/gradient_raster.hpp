@@ -40,6 +40,10 @@ private:
     std::int32_t points = 0;
   };
 
+  std::size_t index_of(std::int32_t column, std::int32_t row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+           static_cast<std::size_t>(column);
+  }
   void lay_out(PointView points, float spacing);
   void add(float u, float v, float z);
 

@@ -33,7 +33,7 @@ struct ToroidalGrid {
             wrapped(x >> 2, kAcross);
         const std::size_t inside =
             (wrapped(z, kCube) * kCube + wrapped(y, kCube)) * kCube + wrapped(x, kCube);
-        return cube * (kCube * kCube * kCube) + inside;
+        return cube * kInCube + inside;
       }
     }
   };
@@ -45,7 +45,8 @@ struct ToroidalGrid {
   }
 
 private:
-  static constexpr int kCube = 4;
+  static constexpr int kCube = 4;  // edge
+  static constexpr std::size_t kInCube = std::size_t{kCube} * kCube * kCube;
 
   static std::size_t wrapped(std::int32_t value, int size) {
     return static_cast<std::size_t>(value & (size - 1));

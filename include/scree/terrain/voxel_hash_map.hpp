@@ -136,7 +136,7 @@ inline std::size_t VoxelHashMap::home_slot(const VoxelKey& key) const {
   constexpr std::uint64_t kGoldenRatio = 0x9E3779B97F4A7C15U;  // Fibonacci hashing: 2^64 / phi
   const auto wide = [](int value) { return std::uint64_t{static_cast<std::uint16_t>(value)}; };
   const std::uint64_t word = wide(key.x >> 2) | wide(key.y >> 1) << 16U | wide(key.z >> 1) << 32U;
-  const unsigned inside = (key.x & 3U) | (key.y & 1U) << 2U | (key.z & 1U) << 3U;
+  const auto inside = static_cast<unsigned>((key.x & 3) | (key.y & 1) << 2 | (key.z & 1) << 3);
   return static_cast<std::size_t>((word * kGoldenRatio >> 32U) << 4U | inside) & mask_;
 }
 
