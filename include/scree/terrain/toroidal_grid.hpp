@@ -13,6 +13,7 @@ namespace scree {
 /// so tells which one the slot holds.
 template <int kWidth, int kHeight>
 struct ToroidalGrid {
+  static_assert(kWidth >= 4 && kHeight >= 4);
   static_assert((kWidth & (kWidth - 1)) == 0 && (kHeight & (kHeight - 1)) == 0, "powers of two");
   static constexpr std::size_t kSlots = std::size_t{kWidth} * kWidth * kHeight;
 
@@ -21,20 +22,16 @@ struct ToroidalGrid {
     std::int32_t x = 0, y = 0, z = 0;
     bool operator==(const CellIndex&) const = default;
 
-    /// Where its memory lies, below kSlots. In a grid of some height cubes of 4 x 4 x 4 cells lie
-    /// together: who comes to one cell comes to those around it.
+    /// Where its memory lies, below kSlots. Cubes of 4 x 4 x 4 cells lie together: who comes to one
+    /// cell comes to those around it.
     std::size_t slot() const {
-      if constexpr (kHeight < kCube) {
-        return (wrapped(z, kHeight) * kWidth + wrapped(y, kWidth)) * kWidth + wrapped(x, kWidth);
-      } else {
-        constexpr int kAcross = kWidth / kCube;
-        const std::size_t cube =
-            (wrapped(z >> 2, kHeight / kCube) * kAcross + wrapped(y >> 2, kAcross)) * kAcross +
-            wrapped(x >> 2, kAcross);
-        const std::size_t inside =
-            (wrapped(z, kCube) * kCube + wrapped(y, kCube)) * kCube + wrapped(x, kCube);
-        return cube * kInCube + inside;
-      }
+      constexpr int kAcross = kWidth / kCube;
+      const std::size_t cube =
+          (wrapped(z >> 2, kHeight / kCube) * kAcross + wrapped(y >> 2, kAcross)) * kAcross +
+          wrapped(x >> 2, kAcross);
+      const std::size_t inside =
+          (wrapped(z, kCube) * kCube + wrapped(y, kCube)) * kCube + wrapped(x, kCube);
+      return cube * kInCube + inside;
     }
   };
 
