@@ -1,10 +1,7 @@
 #include "scree/detect/elevation_gradient.hpp"
 
-#include <algorithm>
-#include <limits>
-
 #include "scree/detect/multiversion.hpp"
-#include "scree/detect/short_exp.hpp"
+#include "scree/detect/short_gaussian.hpp"
 
 namespace scree {
 namespace {
@@ -12,7 +9,6 @@ namespace {
 /// One lane for each of the eight positions around a point: the compiler maps them to whatever
 /// vectors the processor has, and the result does not depend on which.
 using Lanes = float __attribute__((vector_size(32)));
-constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 using Masks = std::int32_t __attribute__((vector_size(32)));
 
 constexpr Lanes kOffsetX = {-1, 0, 1, -1, 1, -1, 0, 1};
@@ -30,21 +26,16 @@ float sum(Lanes lanes) {
 /// What the inner loop needs, so that it reads registers only.
 struct Kernel {
   Lanes offset_x, offset_y;
-  float square;    // square of the radius, square metres
-  float exponent;  // factor of the squared distance in the exponent
-  int squarings;
+  float square;  // square of the radius, square metres
+  ShortGaussian weight;
   int min_neighbours;
+  float share;  // of the Sobel sum that is the slope, 1/m
 };
 
-struct UndividedSlope {
-  float x, y;
-};
-
-/// The inner loop: all kernel sums of one point (eq. 4) in one pass over its neighbourhood. The
-/// Sobel sum is left undivided.
+/// The inner loop: all kernel sums of one point (eq. 4) in one pass over its neighbourhood.
 SCREE_MULTIVERSION
-UndividedSlope sobel(const Kernel& kernel, const PointCloud& points, std::uint32_t i,
-                     std::span<const Run> neighbourhood) {
+Slope sobel(const Kernel& kernel, const PointCloud& points, std::uint32_t i,
+            std::span<const Run> neighbourhood) {
   const float x = points.x[i], y = points.y[i], z = points.z[i];
   const Lanes offset_x = kernel.offset_x, offset_y = kernel.offset_y;
   Lanes weights{}, elevations{};
@@ -54,8 +45,8 @@ UndividedSlope sobel(const Kernel& kernel, const PointCloud& points, std::uint32
       const Lanes dx = (points.x[j] - x) - offset_x, dy = (points.y[j] - y) - offset_y;
       const Lanes distance = dx * dx + dy * dy;
       const Masks inside = distance <= kernel.square;
-      Lanes k = distance * kernel.exponent;
-      ShortExp::replace(k, kernel.squarings);
+      Lanes k = distance;
+      kernel.weight.replace(k);
       // The bits of k where it is inside, else of zero: cheaper than a choice without AVX.
       k = reinterpret_cast<Lanes>(reinterpret_cast<Masks>(k) & inside);
       weights += k;
@@ -65,29 +56,27 @@ UndividedSlope sobel(const Kernel& kernel, const PointCloud& points, std::uint32
   }
   std::int32_t fewest = counts[0];
   for (int k = 1; k < 8; ++k) fewest = counts[k] < fewest ? counts[k] : fewest;
-  if (fewest < kernel.min_neighbours) {
-    return {kUnknown, kUnknown};
-  }
+  if (fewest < kernel.min_neighbours) return {};
   const Lanes estimate = elevations / weights;
-  return {sum(kSobelX * estimate), sum(kSobelY * estimate)};
+  return {sum(kSobelX * estimate) * kernel.share, sum(kSobelY * estimate) * kernel.share};
 }
 
 }  // namespace
 
 void ElevationGradient::compute(const PlaneCells& cells, std::span<float> slope_x,
                                 std::span<float> slope_y) const {
-  const float square = radius * radius;
-  const float decay = 1.0F / (2.0F * bandwidth * bandwidth);
-  const ShortExp exp(square * decay);
-  const Kernel kernel{kOffsetX * spacing, kOffsetY * spacing, square,
-                      -decay * exp.scale, exp.squarings,      min_neighbours};
-  const float share = 1.0F / (8.0F * spacing);
+  const Kernel kernel{.offset_x = kOffsetX * spacing,
+                      .offset_y = kOffsetY * spacing,
+                      .square = radius * radius,
+                      .weight = {radius, bandwidth},
+                      .min_neighbours = min_neighbours,
+                      .share = 1.0F / (8.0F * spacing)};
   const PointCloud& points = cells.points();
   cells.for_each_cell([&](Run cell, std::span<const Run> neighbourhood) {
     for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
-      const UndividedSlope slope = sobel(kernel, points, i, neighbourhood);
-      slope_x[i] = slope.x * share;
-      slope_y[i] = slope.y * share;
+      const Slope slope = sobel(kernel, points, i, neighbourhood);
+      slope_x[i] = slope.x;
+      slope_y[i] = slope.y;
     }
   });
 }

@@ -3,21 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scree/detect/short_exp.hpp"
-
 namespace scree {
 
 void GradientRaster::build(PointView points, std::span<const std::uint8_t> left_out,
                            const ElevationGradient& gradient) {
   lay_out(points, gradient.spacing);
-  const float spread = gradient.bandwidth / gradient.spacing;
   radius_ = gradient.radius / gradient.spacing;
-  const float decay = 1 / (2 * spread * spread);
-  const ShortExp exp(radius_ * radius_ * decay);
-  exponent_ = -decay * exp.scale;
-  squarings_ = exp.squarings;
+  weight_ = {radius_, gradient.bandwidth / gradient.spacing};
   min_neighbours_ = gradient.min_neighbours;
-  places_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), {});
+  places_.assign(index_of(0, rows_), {});
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (left_out[i] != 0) continue;
     add((points.x[i] - low_x_) * inverse_, (points.y[i] - low_y_) * inverse_, points.z[i]);
@@ -59,8 +53,8 @@ void GradientRaster::add(float u, float v, float z) {
       const float dx = static_cast<float>(column) - u;
       const float square = dx * dx + dy * dy;
       if (square > radius_ * radius_) continue;
-      float weight = square * exponent_;
-      ShortExp::replace(weight, squarings_);
+      float weight = square;
+      weight_.replace(weight);
       Place& place = places_[index_of(column, row)];
       place.weights += weight;
       place.elevations += weight * z;

@@ -70,9 +70,10 @@ void GroundSurface::build(PointView points, const GroundSurfaceSettings& setting
   // Cells too small for the density of the points leave the ground in tatters.
   constexpr float kGrowth = 1.25F;
   constexpr int kMostGrowths = 8;  // up to six times the size
+  const PlaneBounds bounds = bounds_of(points);
   float cell_size = settings.cell_size;
   for (int growth = 0;; ++growth, cell_size *= kGrowth) {
-    lay_out(points, cell_size);
+    lay_out(bounds, cell_size);
     if (gather(points) >= settings.cell_points || growth == kMostGrowths) break;
   }
   find_ground(settings, accuracy);
@@ -108,8 +109,7 @@ void GroundSurface::find_ground(const GroundSurfaceSettings& settings, Accuracy 
   }
 }
 
-void GroundSurface::lay_out(PointView points, float cell_size) {
-  const PlaneBounds bounds = bounds_of(points);
+void GroundSurface::lay_out(const PlaneBounds& bounds, float cell_size) {
   const auto cells = [&](float low, float high) {
     return static_cast<std::size_t>((high - low) / cell_) + 1 + 2 * kBorder;
   };

@@ -168,19 +168,20 @@ namespace {
 /// A box in the frame of the map's floats.
 struct UprightBox {
   Eigen::Vector2f middle, half;
-  float yaw, floor;
+  Eigen::Matrix2f turn;  // into the box
+  float floor;
 
   UprightBox(const Obstacle& obstacle, const Eigen::Vector3d& origin)
       : middle((obstacle.center - origin).head<2>().cast<float>()),
         half(obstacle.extent.head<2>().cast<float>() / 2),
-        yaw(static_cast<float>(obstacle.yaw)),
+        turn(Eigen::Rotation2Df(static_cast<float>(-obstacle.yaw)).toRotationMatrix()),
         floor(static_cast<float>(obstacle.center.z() - obstacle.extent.z() / 2 - origin.z())) {}
 
   /// Whether a point higher than `least` above its floor lies in it, or beside it within reach.
   bool holds(const Eigen::Vector3f& point, float least) const {
     constexpr float kMargin = 0.2F;  // metres
     if (point.z() <= floor + least) return false;
-    const Eigen::Vector2f at = Eigen::Rotation2Df(-yaw) * (point.head<2>() - middle);
+    const Eigen::Vector2f at = turn * (point.head<2>() - middle);
     return std::abs(at.x()) < half.x() + kMargin && std::abs(at.y()) < half.y() + kMargin;
   }
 };

@@ -1,11 +1,17 @@
 #pragma once
 
+#include <limits>
 #include <span>
 
 #include "scree/config/settings.hpp"
 #include "scree/detect/plane_cells.hpp"
 
 namespace scree {
+
+struct Slope {
+  float x = std::numeric_limits<float>::quiet_NaN();  ///< metres per metre; NaN: not known
+  float y = std::numeric_limits<float>::quiet_NaN();
+};
 
 /// Gaussian-kernel Sobel operator on scattered points (paper eq. 1-4, fig. 2-3).
 struct ElevationGradient {

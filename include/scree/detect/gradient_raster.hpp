@@ -2,19 +2,14 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 
 #include "scree/core/fixed_vector.hpp"
 #include "scree/core/point_cloud.hpp"
 #include "scree/detect/elevation_gradient.hpp"
+#include "scree/detect/short_gaussian.hpp"
 
 namespace scree {
-
-struct Slope {
-  float x = std::numeric_limits<float>::quiet_NaN();  ///< metres per metre; NaN: not known
-  float y = std::numeric_limits<float>::quiet_NaN();
-};
 
 /// The Gaussian-kernel Sobel operator (paper eq. 1-4) at the places of a raster as wide as the
 /// operator's positions are apart. A place's eight positions are places, too, so that each point
@@ -48,8 +43,8 @@ private:
   void add(float u, float v, float z);
 
   float low_x_ = 0, low_y_ = 0, spacing_ = 1, inverse_ = 1;
-  float radius_ = 0, exponent_ = 0;  // of the kernel, in units of spacing_
-  int squarings_ = 0;
+  float radius_ = 0;  // of the kernel, in units of spacing_
+  ShortGaussian weight_;
   std::int32_t min_neighbours_ = 1;
   std::int32_t columns_ = 0, rows_ = 0;
   FixedVector<Place> places_;

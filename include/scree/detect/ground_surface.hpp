@@ -110,7 +110,7 @@ public:
   std::uint32_t points_in(std::size_t cell) const { return begin_[cell + 1] - begin_[cell]; }
 
 private:
-  void lay_out(PointView points, float cell_size);
+  void lay_out(const PlaneBounds& bounds, float cell_size);
   /// The height below which this share of a cell's points lies; NaN without a point.
   float height_in(std::size_t cell, double share);
   /// Sorts the points by cells and sets the heights of these.

@@ -99,11 +99,9 @@ TEST_F(MovingTrackerTest, WhatStandsBesideItsWayStays) {
 
 TEST_F(MovingTrackerTest, KnowsWhatItCameFrom) {
   const Obstacle left = person(5.1, 0), there = person(5, 1), beside = person(6, 0.5);
-  update({person(5, 0)});
-  for (int i = 1; i < 11; ++i) {
-    EXPECT_FALSE(tracker_.was_left(left)) << i;
-    if (i == 3) break;
+  for (int i = 0; i < 3; ++i) {
     update({person(5, 0.05 * i)});
+    EXPECT_FALSE(tracker_.was_left(left)) << i;
   }
   for (int i = 3; i < 21; ++i) update({person(5, 0.05 * i)});
   EXPECT_TRUE(tracker_.was_left(left));

@@ -52,4 +52,8 @@ inline std::optional<Eigen::Vector2d> slope_by_formula(const PointCloud& cloud, 
          (8 * kernel.d);
 }
 
+inline bool is_slope(float x, float y, const Eigen::Vector2d& expected) {
+  return std::abs(x - expected.x()) <= 1e-4 && std::abs(y - expected.y()) <= 1e-4;
+}
+
 }  // namespace scree::test
