@@ -24,16 +24,23 @@ std::uint64_t LidarCounters::all_refused() const {
   return std::accumulate(refused.begin(), refused.end(), std::uint64_t{0});
 }
 
-LidarStream::LidarStream(const LidarSettings& settings, OnSweep on_sweep, OnPacket on_packet)
+LidarStream::LidarStream(const LidarSettings& settings, OnSweep on_sweep, OnPacket on_packet,
+                         int parts)
     : decoder_(settings.model),
       model_(settings.model),
       on_sweep_(std::move(on_sweep)),
       on_packet_(std::move(on_packet)),
-      builder_(settings.cut_azimuth_deg, [this](Sweep& sweep) {
-        ++counters_.sweeps;
-        counters_.dropped += sweep.dropped;
-        if (on_sweep_) on_sweep_(sweep);
-      }) {}
+      builder_(settings.cut_azimuth_deg, parts, [this](Sweep& sweep) { hand_out(sweep); }) {}
+
+void LidarStream::hand_out(Sweep& sweep) {
+  if (sweep.ends_turn) {
+    ++counters_.sweeps;
+    counters_.dropped += sweep.dropped;
+  } else {
+    ++counters_.parts;
+  }
+  if (on_sweep_) on_sweep_(sweep);
+}
 
 void LidarStream::take(Bytes datagram, std::int64_t arrival_ns) {
   const Refusal refusal = check_data_packet(datagram, model_);

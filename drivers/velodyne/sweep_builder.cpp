@@ -18,8 +18,12 @@ constexpr std::int64_t kShortestTurnNs = 20'000'000;
 
 }  // namespace
 
-SweepBuilder::SweepBuilder(double cut_azimuth_deg, std::function<void(Sweep&)> on_sweep)
-    : cut_azimuth_(static_cast<float>(cut_azimuth_deg * 100.0)), on_sweep_(std::move(on_sweep)) {}
+SweepBuilder::SweepBuilder(double cut_azimuth_deg, int parts, std::function<void(Sweep&)> on_sweep)
+    : cut_azimuth_(static_cast<float>(cut_azimuth_deg * 100.0)),
+      parts_(parts),
+      on_sweep_(std::move(on_sweep)) {
+  if (parts_ > 1) so_far_ = Sweep(kSweepCapacity);
+}
 
 bool SweepBuilder::passes_cut(float azimuth, std::int64_t shot_ns) {
   const float before = behind_cut_;
@@ -53,6 +57,9 @@ void SweepBuilder::add(const Shots& shots, std::int64_t device_ns, std::int64_t 
     if (!open_) {
       open_ = true;
       begin_ns_ = shot_ns;
+      part_ = part_at(behind_cut_);
+    } else if (!second && ends_part()) {
+      hand_out_part();
     }
     last_shot_ns_ = shot_ns;
     const float range = shots.range[shot], reflectivity = shots.reflectivity[shot];
@@ -76,16 +83,40 @@ void SweepBuilder::add(const Shots& shots, std::int64_t device_ns, std::int64_t 
   }
 }
 
+/// Just before the cut the azimuth may still waver from behind it.
+bool SweepBuilder::ends_part() const {
+  return part_at(behind_cut_) > part_ && behind_cut_ < kFull - kStepBack;
+}
+
+int SweepBuilder::part_at(float behind_cut) const {
+  return static_cast<int>(behind_cut * static_cast<float>(parts_) / kFull);
+}
+
+void SweepBuilder::hand_out_part() {
+  part_ = part_at(behind_cut_);
+  so_far_.copy_from(sweep_);
+  so_far_.ends_turn = false;
+  so_far_.is_whole = begins_at_cut_;
+  hand_out(so_far_);
+}
+
 void SweepBuilder::finish() {
   if (!open_) return;
   open_ = false;
-  const std::int64_t end_ns = sweep_.points.empty() ? last_shot_ns_ : last_return_ns_;
-  sweep_.shift(-static_cast<std::int32_t>(end_ns - begin_ns_));
-  sweep_.end_ns = end_ns + to_host_ns_;
+  sweep_.ends_turn = true;
   sweep_.is_whole = begins_at_cut_ && ends_at_cut_;
   begins_at_cut_ = std::exchange(ends_at_cut_, false);
-  on_sweep_(sweep_);
+  hand_out(sweep_);
   sweep_.clear();
+  ++turn_;
+}
+
+void SweepBuilder::hand_out(Sweep& sweep) {
+  const std::int64_t end_ns = sweep.points.empty() ? last_shot_ns_ : last_return_ns_;
+  sweep.shift(-static_cast<std::int32_t>(end_ns - begin_ns_));
+  sweep.end_ns = end_ns + to_host_ns_;
+  sweep.turn = turn_;
+  on_sweep_(sweep);
 }
 
 }  // namespace scree::velodyne

@@ -25,6 +25,11 @@ constexpr std::size_t kSweeps = 3;
 // One list more than sweeps, so that a list finds room while the publisher works on another.
 constexpr std::size_t kLists = 4;
 
+/// Sweeps of these settings that may wait: the parts of a turn besides.
+std::size_t most_sweeps(const Settings& settings) {
+  return kSweeps + static_cast<std::size_t>(settings.detect.lists_per_turn - 1);
+}
+
 std::size_t max_obstacles(const Settings& settings) {
   return static_cast<std::size_t>(settings.memory.obstacles);
 }
@@ -36,9 +41,9 @@ public:
                  std::unique_ptr<Keeper> keeper)
       : sensors_(sensors),
         keeper_(std::move(keeper)),
-        sweeps_(kSweeps, [] { return TimedSweep(); }),
+        sweeps_(most_sweeps(settings), [] { return TimedSweep(); }),
         lists_(kLists, [&] { return TimedObstacleList(max_obstacles(settings)); }),
-        lidar_(settings.lidar, std::move(ports), lines.pps, sweeps_, keeper_.get()),
+        lidar_(settings, std::move(ports), lines.pps, sweeps_, keeper_.get()),
         detector_(std::move(process), sensors, settings.map.wait, sweeps_, lists_),
         publisher_(
             settings, lines, std::move(publisher), lists_, [this] { return collect_status(); },
@@ -101,6 +106,7 @@ private:
     DaemonStatus status;
     status.lidar = lidar_.status();
     status.lidar.sweeps_dropped += detector_.sweeps_skipped();
+    status.lidar.parts_dropped += detector_.parts_skipped();
     status.detector_loop_ns = detector_.last_loop_ns();
     status.sweeps_not_covered = detector_.not_covered();
     status.lists_dropped = detector_.lists_dropped();

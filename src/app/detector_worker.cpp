@@ -1,5 +1,6 @@
 #include "detector_worker.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <thread>
 #include <utility>
@@ -19,7 +20,11 @@ constexpr milliseconds kMotionPause{1};
 
 DetectorWorker::DetectorWorker(SweepProcessor process, SyncBuffer* sensors, double max_wait_s,
                                SweepPool& sweeps, ObstacleListPool& lists)
-    : process_(std::move(process)), sensors_(sensors), sweeps_(sweeps), lists_(lists) {
+    : process_(std::move(process)),
+      sensors_(sensors),
+      sweeps_(sweeps),
+      waiting_(sweeps.fill().capacity),
+      lists_(lists) {
   if (sensors_ != nullptr) wait_.emplace(*sensors_, max_wait_s);
 }
 
@@ -28,12 +33,13 @@ void DetectorWorker::run() {
     note_loop();
     sweeps_.wait(kGatherInterval);
     if (sensors_ != nullptr) sensors_->gather();
-    while (TimedSweep* sweep = is_stopped_ ? nullptr : sweeps_.pop()) {
+    bool was_full = false;
+    while (TimedSweep* sweep = is_stopped_ ? nullptr : next_sweep(was_full)) {
       wait_for_motion(*sweep);
       process(*sweep);
       const QueueFill fill = sweeps_.fill();
+      was_full = fill.waiting == fill.capacity;
       sweeps_.release(sweep);
-      if (fill.waiting == fill.capacity) skip_oldest();
       note_loop();
     }
   }
@@ -48,12 +54,36 @@ void DetectorWorker::set_max_wait(double seconds) {
   if (wait_) wait_->set_limit(seconds);
 }
 
-/// A processor that is too slow must not make every list late.
-void DetectorWorker::skip_oldest() {
-  TimedSweep* const sweep = sweeps_.pop();
-  if (sweep == nullptr) return;
+/// The oldest that waits and is not left out; null when none waits.
+/// @param was_full whether no sweep was free any more: a processor that is too slow must not make
+/// every list late, so one of the turns that wait goes
+TimedSweep* DetectorWorker::next_sweep(bool was_full) {
+  while (TimedSweep* sweep = sweeps_.pop()) waiting_.push_back(sweep);
+  if (waiting_.empty()) return nullptr;
+  const TimedSweep* const newest = waiting_.back();
+  const auto ends_turn = [](const TimedSweep* sweep) { return sweep->sweep.ends_turn; };
+  bool has_too_many = was_full && std::ranges::count_if(waiting_, ends_turn) > 1;
+  const auto is_left_out = [&](const TimedSweep* sweep) {
+    return ends_turn(sweep) ? std::exchange(has_too_many, false) : sweep != newest;
+  };
+  std::size_t kept = 0;
+  for (TimedSweep* sweep : waiting_) {
+    if (is_left_out(sweep)) {
+      skip(sweep);
+    } else {
+      waiting_[kept++] = sweep;
+    }
+  }
+  TimedSweep* const next = waiting_[0];
+  std::copy(waiting_.begin() + 1, waiting_.begin() + kept, waiting_.begin());
+  waiting_.resize(kept - 1);
+  return next;
+}
+
+void DetectorWorker::skip(TimedSweep* sweep) {
+  auto& count = sweep->sweep.ends_turn ? sweeps_skipped_ : parts_skipped_;
+  count.fetch_add(1, std::memory_order_relaxed);
   sweeps_.release(sweep);
-  sweeps_skipped_.fetch_add(1, std::memory_order_relaxed);
 }
 
 void DetectorWorker::note_loop() {

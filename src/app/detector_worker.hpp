@@ -14,8 +14,9 @@
 namespace scree {
 
 /// Takes sweeps from their pool, lets each wait for the motion that covers it, has it processed and
-/// passes the list on. When all sweeps of the pool are taken it is too slow: then the oldest that
-/// waits is left out. run() is the work of a thread.
+/// passes the list on. When all sweeps of the pool are taken it is too slow: then the oldest turn
+/// that waits is left out. A part of a turn is left out as soon as something newer waits, which
+/// holds it too. run() is the work of a thread.
 class DetectorWorker {
 public:
   /// Keeps references to the buffer and to both pools.
@@ -41,9 +42,12 @@ public:
 
   /// Sweeps that were left out because newer ones waited.
   std::uint64_t sweeps_skipped() const { return sweeps_skipped_.load(std::memory_order_relaxed); }
+  /// The same of parts of turns.
+  std::uint64_t parts_skipped() const { return parts_skipped_.load(std::memory_order_relaxed); }
 
 private:
-  void skip_oldest();
+  TimedSweep* next_sweep(bool was_full);
+  void skip(TimedSweep* sweep);
   void note_loop();
   void wait_for_motion(const TimedSweep& sweep);
   void process(const TimedSweep& sweep);
@@ -52,11 +56,12 @@ private:
   SyncBuffer* sensors_;
   std::optional<MotionWait> wait_;
   SweepPool& sweeps_;
+  FixedVector<TimedSweep*> waiting_;  // taken from there, oldest first
   ObstacleListPool& lists_;
   LoopCounter loops_;
   std::atomic<bool> is_stopped_{false};
   std::atomic<std::int64_t> last_loop_ns_{steady_ns()};
-  std::atomic<std::uint64_t> lists_dropped_{0}, sweeps_skipped_{0};
+  std::atomic<std::uint64_t> lists_dropped_{0}, sweeps_skipped_{0}, parts_skipped_{0};
 };
 
 }  // namespace scree

@@ -54,7 +54,8 @@ HealthWatch::HealthWatch(const Settings& settings, std::int64_t now_ns)
       encoder_({"frames of the encoder on " + settings.encoder.interface,
                 "check the encoder's power, the bus and its bit rate, and encoder.can_id",
                 1e9 / static_cast<double>(SyncBuffer::kSilenceNs)},
-               now_ns) {}
+               now_ns),
+      keep_up_(settings.detect.lists_per_turn) {}
 
 bool HealthWatch::update(std::int64_t now_ns, const LidarStatus& lidar, const ImuStatus& imu,
                          const EncoderStatus& encoder, const DetectorStatus& detector,
@@ -101,7 +102,8 @@ bool HealthWatch::update_setup(std::int64_t now_ns, const LidarStatus& lidar,
   std::uint32_t named = 0;
   setup.for_each_slot([&](std::size_t slot, const SetupFinding&) { named |= 1U << slot; });
   const bool was_slow = !keep_up_.sentence().empty();
-  const bool is_other = keep_up_.update(now_ns, lidar.lidar.sweeps, lidar.sweeps_dropped);
+  const bool is_other = keep_up_.update(now_ns, lidar.lidar.sweeps + lidar.lidar.parts,
+                                        lidar.sweeps_dropped + lidar.parts_dropped);
   if (named == named_faults_ && !is_other) return false;
   health.setup.clear();
   setup.for_each_slot([&](std::size_t slot, const SetupFinding& finding) {

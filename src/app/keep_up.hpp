@@ -5,11 +5,13 @@
 
 namespace scree {
 
-/// Says when the detector is too slow for the lidar, and how much: sweeps are left out then. It
-/// looks back over windows of 5 s.
+/// Says when the detector is too slow for the lidar, and how much: sweeps, or parts of them, are
+/// left out then. It looks back over windows of 5 s.
 class KeepUp {
 public:
-  /// @param sweeps of the lidar so far
+  explicit KeepUp(int lists_per_turn) : lists_per_turn_(lists_per_turn) {}
+
+  /// @param sweeps of the lidar so far, and parts of them that should have had a list
   /// @param left_out of them: found the detector busy
   /// @return whether the sentence changed
   bool update(std::int64_t now_ns, std::uint64_t sweeps, std::uint64_t left_out);
@@ -17,6 +19,7 @@ public:
   const std::string& sentence() const { return sentence_; }
 
 private:
+  int lists_per_turn_;
   std::int64_t since_ns_ = 0;
   std::uint64_t sweeps_ = 0, left_out_ = 0;  // then
   std::string sentence_;

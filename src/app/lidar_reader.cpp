@@ -28,13 +28,15 @@ Result<LidarPorts> LidarPorts::open(const LidarSettings& settings) {
   return LidarPorts{std::move(*data), std::move(*position)};
 }
 
-LidarReader::LidarReader(const LidarSettings& settings, LidarPorts ports, RobotLines::Pulses pps,
+LidarReader::LidarReader(const Settings& settings, LidarPorts ports, RobotLines::Pulses pps,
                          SweepPool& sweeps, Keeper* keeper)
     : ports_(std::move(ports)),
       pps_(std::move(pps)),
       sweeps_(sweeps),
       keeper_(keeper),
-      stream_(settings, [this](Sweep& sweep) { push(sweep); }) {}
+      stream_(
+          settings.lidar, [this](Sweep& sweep) { push(sweep); }, {},
+          settings.detect.lists_per_turn) {}
 
 void LidarReader::run() {
   pollfd wait_for[] = {{ports_.data.descriptor(), POLLIN, 0},
@@ -111,10 +113,16 @@ void LidarReader::read_pulses() {
 }
 
 void LidarReader::push(Sweep& sweep) {
-  if (sweep.is_whole) status_.last_sweep_ns = arrival_ns_;
+  if (sweep.is_whole && sweep.ends_turn) status_.last_sweep_ns = arrival_ns_;
   // Nothing seen is not the same as nothing there: a covered sensor must not give empty lists.
   if (sweep.points.empty()) {
-    ++status_.sweeps_empty;
+    if (sweep.ends_turn) ++status_.sweeps_empty;
+    return;
+  }
+  // The last free place is for a turn's end.
+  const QueueFill fill = sweeps_.fill();
+  if (!sweep.ends_turn && fill.waiting + 1 >= fill.capacity) {
+    ++status_.parts_dropped;
     return;
   }
   TimedSweep* item = sweeps_.acquire();

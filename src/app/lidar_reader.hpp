@@ -31,8 +31,8 @@ struct LidarPorts {
 /// blocks only in poll().
 class LidarReader {
 public:
-  LidarReader(const LidarSettings& settings, LidarPorts ports, RobotLines::Pulses pps,
-              SweepPool& sweeps, Keeper* keeper = nullptr);
+  LidarReader(const Settings& settings, LidarPorts ports, RobotLines::Pulses pps, SweepPool& sweeps,
+              Keeper* keeper = nullptr);
 
   /// Returns after stop() was called from another thread.
   void run();

@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -83,9 +84,18 @@ Pipeline::Pipeline(const Settings& settings, const Networks& networks)
 const ObstacleList& Pipeline::process(const Sweep& sweep) {
   timer_.start();
   sensors_->gather();
-  follow_motion(sweep);
-  list_.stamp_ns = sweep.end_ns;
   grid_ = nullptr;
+  if (sweep.ends_turn) {
+    process_turn(sweep);
+  } else {
+    process_part(sweep);
+  }
+  list_.stamp_ns = sweep.end_ns;
+  return list_;
+}
+
+void Pipeline::process_turn(const Sweep& sweep) {
+  follow_motion(sweep);
   if (motion_ != nullptr) {
     mapper_->add(sweep, *motion_, timer_);
     if (mapper_->was_reset()) clear_tracks();
@@ -96,13 +106,29 @@ const ObstacleList& Pipeline::process(const Sweep& sweep) {
   // A map that has just begun has confirmed nothing yet.
   uses_map_ = motion_ != nullptr && (!sweep_detector_ || !mapper_->map().cloud().empty());
   if (uses_map_) {
-    detect_in_map();
+    detect_in_map(sweep);
   } else {
-    detect_in_sweep(motion_ != nullptr ? mapper_->pose() : Pose());
+    detect_in_sweep(sweep.end_ns, motion_ != nullptr ? mapper_->pose() : Pose());
   }
   report_setup();
   has_looked_ = sweep.is_whole && !ground().empty();
-  return list_;
+}
+
+void Pipeline::process_part(const Sweep& sweep) {
+  has_looked_ = uses_map_ && motion_ == sensors_.get() && sweep.is_whole;
+  if (!has_looked_) return list_.obstacles.clear();
+  mapper_->add_part(sweep, *motion_, timer_);
+  detect_in_map(sweep);
+  has_looked_ = !ground().empty();
+}
+
+/// How much of a turn the list is later than the one before.
+float Pipeline::turns_since_list(const Sweep& sweep) {
+  if (sweep.ends_turn && !sweep.time_ns.empty()) turn_ns_ = -std::int64_t{sweep.time_ns[0]};
+  const bool had_part = std::exchange(is_within_turn_, !sweep.ends_turn);
+  if ((sweep.ends_turn && !had_part) || turn_ns_ <= 0) return 1;
+  const std::int64_t since_ns = sweep.end_ns - list_.stamp_ns;
+  return std::clamp(static_cast<float>(since_ns) / static_cast<float>(turn_ns_), 0.0F, 1.0F);
 }
 
 /// Decides whose motion the map goes by, and begins it anew where that does not follow.
@@ -145,7 +171,8 @@ void Pipeline::report_setup() {
   }
 }
 
-void Pipeline::detect_in_map() {
+/// @param sweep that the map got last
+void Pipeline::detect_in_map(const Sweep& sweep) {
   const RollingMap& map = mapper_->map();
   tracker_.remove_if([this](const Obstacle& obstacle) {
     return mapper_->remove_left(obstacle, moving_tracker_.was_left(obstacle));
@@ -156,9 +183,15 @@ void Pipeline::detect_in_map() {
   const Pose cloud_in_map{map.origin(), Eigen::Quaterniond::Identity()};
   for (Obstacle& obstacle : found_) move_into_parent(cloud_in_map, obstacle);
   tracker_.update(
-      list_.stamp_ns, mapper_->pose().translation, {found_.data(), found_.size()},
-      [&map](const Eigen::Vector3d& place) { return map.occupancy_at(place); }, list_.obstacles);
-  add_moving();
+      sweep.end_ns, mapper_->pose().translation, {found_.data(), found_.size()},
+      [&map](const Eigen::Vector3d& place) { return map.occupancy_at(place); }, list_.obstacles,
+      turns_since_list(sweep));
+  if (sweep.ends_turn) {
+    find_moving(sweep.end_ns);
+  } else {
+    moving_tracker_.predict(sweep.end_ns);
+  }
+  moving_tracker_.add_to(list_.obstacles, tracker_);
   list_.pose = mapper_->to_odom() * mapper_->pose();
   for (Obstacle& obstacle : list_.obstacles) move_into_parent(mapper_->to_odom(), obstacle);
   timer_.done(Stage::tracking);
@@ -168,8 +201,8 @@ void Pipeline::detect_in_map() {
   timer_.done(Stage::grid);
 }
 
-/// Adds what moves in the sweep to the list.
-void Pipeline::add_moving() {
+/// Follows what moves in the sweep.
+void Pipeline::find_moving(std::int64_t stamp_ns) {
   const RollingMap& map = mapper_->map();
   const MovingPoints& moving = mapper_->moving();
   moving_boxes_.clear();
@@ -179,10 +212,9 @@ void Pipeline::add_moving() {
   }
   std::int64_t next_id = tracker_.next_id();
   moving_tracker_.update(
-      list_.stamp_ns, moving_boxes_.found(),
+      stamp_ns, moving_boxes_.found(),
       [&map](const Eigen::Vector3d& place) { return map.is_seen_through(place); }, next_id);
   tracker_.set_next_id(next_id);
-  moving_tracker_.add_to(list_.obstacles, tracker_);
 }
 
 /// z of the ground at a place in the map's frame; no number where it is not known.
@@ -197,14 +229,14 @@ float Pipeline::ground_at(const Eigen::Vector3d& place) const {
 }
 
 /// @param pose of `base` in `odom`
-void Pipeline::detect_in_sweep(const Pose& pose) {
+void Pipeline::detect_in_sweep(std::int64_t stamp_ns, const Pose& pose) {
   const DeskewedSweep& still = mapper_->sweep();
   sweep_detector_->detect(
       {.points = still.points, .origins = still.origins, .robot = Eigen::Vector2f::Zero()}, found_,
       timer_);
   sweep_tracker_.set_next_id(tracker_.next_id());
   sweep_tracker_.update(
-      list_.stamp_ns, Eigen::Vector3d::Zero(), {found_.data(), found_.size()},
+      stamp_ns, Eigen::Vector3d::Zero(), {found_.data(), found_.size()},
       [](const Eigen::Vector3d&) { return Occupancy::unknown; }, list_.obstacles);
   tracker_.set_next_id(sweep_tracker_.next_id());
   list_.pose = pose;

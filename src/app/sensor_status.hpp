@@ -34,6 +34,7 @@ struct LidarStatus {
   std::int64_t without_return_ns = 0;
   std::int64_t last_sweep_ns = 0;    ///< when a whole turn was complete
   std::uint64_t sweeps_dropped = 0;  ///< the detector was busy
+  std::uint64_t parts_dropped = 0;   ///< the same of parts of turns: what comes later holds them
   std::uint64_t sweeps_empty = 0;    ///< without a return
 };
 

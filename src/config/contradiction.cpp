@@ -44,6 +44,10 @@ std::vector<Contradiction> contradictions(const Settings& settings) {
     found.push_back({{"encoder.dbc", "encoder.signal"},
                      "encoder.dbc and encoder.signal belong together, one of them is empty"});
   }
+  const int lists = settings.detect.lists_per_turn;
+  if (lists != 1 && lists != 2 && lists != 4 && lists != 8) {
+    found.push_back({{"detect.lists_per_turn"}, "detect.lists_per_turn must be 1, 2, 4 or 8"});
+  }
   if (settings.track.disappear > settings.track.appear) {
     found.push_back(
         {{"track.disappear", "track.appear"}, "track.disappear must not be above track.appear"});

@@ -50,7 +50,6 @@ void MovingTracker::predict(std::int64_t stamp_ns) {
                             kNoise * square * square / 4;
     track.covariance += seconds * track.velocity_variance + kNoise * square * seconds / 2;
     track.velocity_variance += kNoise * square;
-    track.is_matched = false;
   }
 }
 
@@ -59,6 +58,7 @@ void MovingTracker::associate(std::span<const Obstacle> found, std::int64_t stam
   constexpr double kGate = 0.6;  // metres beside what the filter expects
   found = found.first(std::min(found.size(), is_taken_.capacity()));
   is_taken_.assign(found.size(), 0);
+  for (Track& track : tracks_) track.is_matched = false;
   while (true) {
     double nearest = 1;
     Track* best = nullptr;

@@ -34,7 +34,8 @@ Tracker::Tracker(const TrackingSettings& settings, std::size_t max_tracks,
 void Tracker::update(std::int64_t stamp_ns, const Eigen::Vector3d& robot,
                      std::span<const Obstacle> found,
                      const std::function<Occupancy(const Eigen::Vector3d&)>& occupancy_at,
-                     FixedVector<Obstacle>& obstacles) {
+                     FixedVector<Obstacle>& obstacles, float turns) {
+  turns_ = turns;
   if (found.size() > track_of_.capacity()) {
     dropped_ += found.size() - track_of_.capacity();
     found = found.first(track_of_.capacity());
@@ -70,16 +71,16 @@ void Tracker::update_matched(std::int64_t stamp_ns, std::span<const Obstacle> fo
 
 void Tracker::update_unmatched(
     const std::function<Occupancy(const Eigen::Vector3d&)>& occupancy_at) {
-  const auto share = static_cast<float>(settings_.smoothing);
+  const auto smoothing = static_cast<float>(settings_.smoothing);
   for (Track& track : tracks_) {
     if (track.is_matched) continue;
     const Occupancy seen = occupancy_at(track.obstacle.center);
     // The middle of a hole is empty as long as it is there.
     track.is_seen_empty = seen == Occupancy::free && track.obstacle.height > 0;
-    const float weight = track.is_seen_empty          ? std::min(2 * share, 1.0F)
+    const float weight = track.is_seen_empty          ? std::min(2 * smoothing, 1.0F)
                          : seen == Occupancy::unknown ? 0
-                                                      : share;
-    smooth(track.features, 0, 0, weight);
+                                                      : smoothing;
+    smooth(track.features, 0, 0, share_of(weight));
   }
 }
 
@@ -113,14 +114,16 @@ void Tracker::start_tracks(std::int64_t stamp_ns, std::span<const Obstacle> foun
 /// for the first time.
 void Tracker::choose_published() {
   for (Track& track : tracks_) {
-    const bool was_doubted = track.is_doubted;
-    track.is_doubted = track.confidence < static_cast<float>(settings_.disappear);
+    const bool is_doubted = track.confidence < static_cast<float>(settings_.disappear);
+    track.doubted = is_doubted ? track.doubted + turns_ : 0;
     if (track.is_published) {
-      // Twice, unless its place was seen empty: one list that doubts it would make it flicker.
-      track.is_published = !track.is_doubted || (!was_doubted && !track.is_seen_empty);
+      // Longer than a turn, unless its place was seen empty: one list that doubts it would make it
+      // flicker.
+      track.is_published = !is_doubted || (track.doubted <= 1 && !track.is_seen_empty);
     } else {
+      // The turn that found it first counts whole.
       track.is_published = track.confidence >= static_cast<float>(settings_.appear) &&
-                           track.found >= settings_.least_found;
+                           track.found + 1 - turns_ >= static_cast<float>(settings_.least_found);
       if (track.is_published && track.obstacle.id == 0) track.obstacle.id = next_id_++;
     }
   }
@@ -183,11 +186,16 @@ void Tracker::smooth(Features& features, float positive, float negative, float w
   features[track_negative] += weight * (negative - features[track_negative]);
 }
 
+/// What the settings ask of a turn, for the part of it since the last list.
+float Tracker::share_of(float of_a_turn) const {
+  return turns_ == 1 ? of_a_turn : 1 - std::pow(1 - of_a_turn, turns_);
+}
+
 /// A track's obstacle becomes the one found, but for its id.
 void Tracker::add_found(std::int64_t stamp_ns, const Obstacle& found, Track& track) const {
   // The first answers count alike.
   const float weight =
-      std::max(static_cast<float>(settings_.smoothing), 1.0F / static_cast<float>(track.found + 1));
+      std::max(share_of(static_cast<float>(settings_.smoothing)), turns_ / (track.found + turns_));
   const bool is_positive = found.kind == ObstacleKind::positive;
   smooth(track.features, is_positive ? found.confidence : 0, is_positive ? 0 : found.confidence,
          weight);
@@ -196,7 +204,7 @@ void Tracker::add_found(std::int64_t stamp_ns, const Obstacle& found, Track& tra
   track.obstacle.id = id;
   track.is_seen_empty = false;
   track.found_ns = stamp_ns;
-  ++track.found;
+  track.found += turns_;
   float& best = track.features[track_best];
   best = std::max(best, found.confidence);
   track.features[track_height] = static_cast<float>(found.height);
@@ -205,14 +213,14 @@ void Tracker::add_found(std::int64_t stamp_ns, const Obstacle& found, Track& tra
 /// Sets confidence and kind of every track. What is published fades, whatever the network answers
 /// for a list that misses it.
 void Tracker::classify() {
-  constexpr float kMostFall = 0.2F, kMostFallEmpty = 0.4F;  // of the confidence, in a list
+  constexpr float kMostFall = 0.2F, kMostFallEmpty = 0.4F;  // of the confidence, in a turn
   for (Track& track : tracks_) {
     track.features[track_surer] = distance_to_surer(track);
     const Prediction prediction =
         network_ ? (*network_)(track.features)
                  : Prediction{track.features[track_positive], track.features[track_negative]};
     const bool is_positive = track.obstacle.height > 0;
-    const float most_fall = track.is_seen_empty ? kMostFallEmpty : kMostFall;
+    const float most_fall = turns_ * (track.is_seen_empty ? kMostFallEmpty : kMostFall);
     const float least = track.is_published ? track.confidence - most_fall : 0;
     track.confidence = std::max(is_positive ? prediction.positive : prediction.negative, least);
     track.obstacle.kind = is_positive ? ObstacleKind::positive : ObstacleKind::negative;

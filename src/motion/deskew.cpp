@@ -1,5 +1,7 @@
 #include "scree/motion/deskew.hpp"
 
+#include <algorithm>
+
 #include "scree/motion/range_scatter.hpp"
 
 namespace scree {
@@ -28,10 +30,14 @@ private:
 }  // namespace
 
 void deskew(const Sweep& sweep, const LidarSettings& lidar, const SweepTrajectory& trajectory,
-            OwnReturns& own, DeskewedSweep& out) {
+            OwnReturns& own, DeskewedSweep& out, const TakenTurn& taken) {
   const auto nearest = static_cast<float>(lidar.min_range * lidar.min_range);
   const auto farthest = static_cast<float>(lidar.max_range * lidar.max_range);
   out.clear();
+  const bool goes_on = taken.turn == sweep.turn;
+  const std::size_t points_before = goes_on ? taken.points : 0;
+  const std::size_t empty_before = goes_on ? taken.empty : 0;
+  out.begins_turn = points_before + empty_before == 0;
   LidarTrajectory lidar_trajectory(trajectory.of_sensor(lidar.mount()));
   RangeScatter scatter;
   for (std::size_t i = 0; i < sweep.points.size(); ++i) {
@@ -49,11 +55,13 @@ void deskew(const Sweep& sweep, const LidarSettings& lidar, const SweepTrajector
     out.time_ns.push_back(sweep.time_ns[i]);
     out.is_suspect.push_back(own.is_suspect() ? 1 : 0);
     scatter.add(sweep.laser[i], in_lidar, out.scatter, out.is_isolated);
+    if (i < points_before) out.fresh_points = out.points.size();
   }
   for (const EmptyShot& shot : sweep.empty) {
     const SweepTrajectory::Transform& to_base = lidar_trajectory.at(shot.time_ns);
     out.empty.push_back({to_base.translation, to_base.rotation * shot.end + to_base.translation});
   }
+  out.fresh_empty = std::min(empty_before, out.empty.size());
 }
 
 }  // namespace scree

@@ -98,10 +98,14 @@ bool OwnReturns::end_sweep(float way) {
     }
   }
   const bool has_found = way > 0 && look_for_boxes();
-  for (Bin& bin : bins_) bin.range = 0;
   last_returns_ = returns_;
-  returns_ = 0;
+  forget_sweep();
   return has_found;
+}
+
+void OwnReturns::forget_sweep() {
+  for (Bin& bin : bins_) bin.range = 0;
+  returns_ = 0;
 }
 
 /// A wheel that spins claims a motion that nothing farther off shows.

@@ -38,15 +38,16 @@ Mapper::Mapper(const Settings& settings)
       map_(settings.map, static_cast<std::size_t>(settings.memory.map_voxels)) {}
 
 void Mapper::add(const Sweep& sweep, const SyncBuffer& sensors, StageTimer& timer) {
-  const std::int64_t begin_ns = sweep.end_ns + (sweep.points.empty() ? 0 : sweep.time_ns[0]);
+  part_pose_.reset();
   const Pose before = filter_.pose();
   detect_slip(sensors, sweep.end_ns);
-  step_ = dead_reckoning_.advance(sensors, begin_ns, sweep.end_ns, trajectory_,
+  step_ = dead_reckoning_.advance(sensors, begin_of(sweep), sweep.end_ns, trajectory_,
                                   !slip_detector_.slips());
   const bool has_known_attitude = filter_.has_known_attitude();
   const bool was_silent = has_known_attitude && !filter_.knows_attitude();
   filter_.predict(step_);
-  deskew(sweep, lidar_, trajectory_, own_returns_, sweep_);
+  deskew(sweep, lidar_, trajectory_, own_returns_, sweep_, taken_);
+  taken_ = {};
   const bool was_tilted = filter_.has_known_attitude() && !has_known_attitude;
   const bool has_trail = notice_own_returns();
   was_reset_ = was_tilted || has_trail;
@@ -63,21 +64,48 @@ void Mapper::add(const Sweep& sweep, const SyncBuffer& sensors, StageTimer& time
   extrapolate_motion(before);
   levelling_.advance(sensors, step_, pose());
   update_attitude_error(predicted, was_silent);
-  const double reach = attitude_error_ > 0 ? kMaxHeightError / attitude_error_
-                                           : std::numeric_limits<double>::infinity();
-  map_.add(sweep_, filter_.pose(), sweep.end_ns, reach);
+  map_.add(sweep_, pose(), sweep.end_ns, reach());
   timer.done(Stage::map);
+}
+
+void Mapper::add_part(const Sweep& sweep, const SyncBuffer& sensors, StageTimer& timer) {
+  DeadReckoning ahead = dead_reckoning_;
+  PoseFilter filter = filter_;
+  filter.predict(
+      ahead.advance(sensors, begin_of(sweep), sweep.end_ns, trajectory_, !slip_detector_.slips()));
+  part_pose_ = filter.pose();
+  deskew(sweep, lidar_, trajectory_, own_returns_, sweep_, taken_);
+  own_returns_.forget_sweep();
+  taken_ = {sweep.turn, sweep.points.size(), sweep.empty.size()};
+  timer.done(Stage::motion);
+  moving_.find(sweep_, pose(), map_.free_space(), static_cast<float>(search_reach_));
+  map_.add(sweep_, pose(), sweep.end_ns, reach());
+  timer.done(Stage::map);
+}
+
+/// When its first point was measured.
+std::int64_t Mapper::begin_of(const Sweep& sweep) {
+  return sweep.end_ns + (sweep.points.empty() ? 0 : sweep.time_ns[0]);
+}
+
+/// Farther off an error of the attitude lifts points too much, metres.
+double Mapper::reach() const {
+  return attitude_error_ > 0 ? kMaxHeightError / attitude_error_
+                             : std::numeric_limits<double>::infinity();
 }
 
 void Mapper::restart() {
   dead_reckoning_.restart();
   filter_ = {};
+  part_pose_.reset();
   forget_ground();
 }
 
 void Mapper::forget_ground() {
   surfels_.clear();
   map_.clear();
+  sweep_.take_all();
+  taken_ = {};
 }
 
 void Mapper::take_still(const Sweep& sweep) {

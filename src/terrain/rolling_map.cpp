@@ -46,7 +46,7 @@ VoxelKey RollingMap::key_of(const Eigen::Vector3f& point) const {
 
 void RollingMap::add(const DeskewedSweep& sweep, const Pose& pose, std::int64_t end_ns,
                      double reach_of_sweep) {
-  ++sweep_;
+  if (sweep.begins_turn) ++sweep_;
   end_ns_ = end_ns;
   recenter(pose);
   decay_beam_counts();
@@ -107,7 +107,7 @@ void RollingMap::add_points(const DeskewedSweep& sweep, const Eigen::Matrix3f& r
   const auto key_ahead = [&](std::size_t i) {
     return key_of(rotation * point_in_base(std::min(i, count - 1)) + translation);
   };
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = sweep.fresh_points; i < count; ++i) {
     voxels_.prefetch_index(key_ahead(i + kIndexAhead));
     voxels_.prefetch_voxel(key_ahead(i + kVoxelAhead));
     const Eigen::Vector3f in_base = point_in_base(i);

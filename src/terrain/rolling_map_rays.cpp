@@ -17,12 +17,13 @@ constexpr std::uint16_t kRayStride = 4;
 /// Beams without return count where they went up: below lies ground that was too dark or too far.
 void RollingMap::trace_rays(const DeskewedSweep& sweep, const Eigen::Matrix3f& rotation,
                             const Eigen::Vector3f& translation, float reach) {
-  for (std::size_t i = sweep_ % kRayStride; i < sweep.points.size(); i += kRayStride) {
+  const std::size_t phase = sweep_ % kRayStride;
+  for (std::size_t i = sweep.fresh_points + phase; i < sweep.points.size(); i += kRayStride) {
     const Eigen::Vector3f hit(sweep.points.x[i], sweep.points.y[i], sweep.points.z[i]);
     trace_ray(rotation * sweep.origins[i] + translation, rotation * (hit - sweep.origins[i]),
               reach);
   }
-  for (std::size_t i = sweep_ % kRayStride; i < sweep.empty.size(); i += kRayStride) {
+  for (std::size_t i = sweep.fresh_empty + phase; i < sweep.empty.size(); i += kRayStride) {
     const EmptyBeam& empty = sweep.empty[i];
     const Eigen::Vector3f beam = rotation * (empty.end - empty.origin);
     if (beam.z() > 0) trace_ray(rotation * empty.origin + translation, beam, reach);
@@ -78,13 +79,14 @@ void RollingMap::add_passing_beams(const DeskewedSweep& sweep, const Eigen::Matr
                                    const Eigen::Vector3f& translation) {
   constexpr float kFarBelow = 1.5F;  // the robot, metres: gentle slopes do not get there
   const auto reach = static_cast<float>(settings_.search_reach);
-  for (std::size_t i = sweep_ % kRayStride; i < sweep.points.size(); i += kRayStride) {
+  const std::size_t phase = sweep_ % kRayStride;
+  for (std::size_t i = sweep.fresh_points + phase; i < sweep.points.size(); i += kRayStride) {
     const Eigen::Vector3f hit(sweep.points.x[i], sweep.points.y[i], sweep.points.z[i]);
     if (hit.squaredNorm() < reach * reach || hit.z() > -kFarBelow) continue;
     add_passing_beam(rotation * sweep.origins[i] + translation,
                      rotation * (hit - sweep.origins[i]));
   }
-  for (std::size_t i = sweep_ % kRayStride; i < sweep.empty.size(); i += kRayStride) {
+  for (std::size_t i = sweep.fresh_empty + phase; i < sweep.empty.size(); i += kRayStride) {
     const EmptyBeam& empty = sweep.empty[i];
     add_passing_beam(rotation * empty.origin + translation, rotation * (empty.end - empty.origin));
   }

@@ -120,6 +120,23 @@ class DetectTest(ProgramTest):
             self.check_list(each)
         self.assertTrue(any(each["obstacles"] for each in lists))
 
+    def test_a_turn_may_have_several_lists(self):
+        capture = self.path("capture")
+        self.scree("simulate", capture, "--seconds", "2", "--seed", "3")
+        whole = self.detect(capture)
+        with open(os.path.join(capture, "scree.toml"), "a") as file:
+            file.write("[detect]\nlists_per_turn = 4\n")
+        parted = self.detect(capture)
+        self.assertGreater(len(parted), 3.5 * len(whole))
+        stamps = [each["stamp_ns"] for each in parted]
+        self.assertEqual(stamps, sorted(set(stamps)))
+        poses = {each["stamp_ns"]: each["pose"] for each in parted}
+        for each in whole:
+            self.assertEqual(poses[each["stamp_ns"]], each["pose"])
+        for each in parted:
+            self.check_list(each)
+        self.assertTrue(all(each["obstacles"] for each in parted[20:]))
+
     def cells_of(self, grid):
         """The states of a grid, a text of a sign a cell for each row."""
         rows = []

@@ -29,19 +29,24 @@ def same_obstacles(a, b):
 
 
 class LiveListsTest(LiveDaemonTest):
+    def play(self, capture):
+        """Plays all of it to a screed. Returns the player."""
+        self.start_daemon()
+        self.assertTrue(self.mti.measures.wait(PATIENCE))
+        player = Player(capture, self.port, self.position_port, self.mti)
+        player.wait()
+        player.stop()
+        self.say("no packets on")
+        return player
+
     def test_its_lists_are_those_of_scree_detect(self):
         """As far as nothing is late; the stamps are those of this playing, so not to the bit."""
         capture = self.simulate()
         os.remove(os.path.join(capture, "can.log"))
         offline = self.path("offline.jsonl")
         self.done(self.scree, "detect", capture, "--out", offline)
-        self.start_daemon()
         watched = Lines(self.start(self.scree, "watch", "--url", self.url, "--grid").stdout)
-        self.assertTrue(self.mti.measures.wait(PATIENCE))
-        player = Player(capture, self.port, self.position_port, self.mti)
-        player.wait()
-        player.stop()
-        self.say("no packets on")
+        player = self.play(capture)
         health = "".join(self.health.lines)
         if "dropped" in health or "without all motion" in health:
             self.skipTest("this machine was too slow: sweeps were dropped, or had not all motion")
@@ -63,6 +68,22 @@ class LiveListsTest(LiveDaemonTest):
         print(f"{both} obstacles in both, {added} in the daemon's lists alone, {missed} missed")
         self.assertGreater(both, 100)
         self.assertLess(added + missed, 0.2 * both)
+
+    def test_a_turn_may_have_several_lists(self):
+        """As many as there is time for: of parts that wait the newest is taken."""
+        capture = self.simulate()
+        with open(self.config, "a") as file:
+            file.write("[detect]\nlists_per_turn = 8\n")
+        self.play(capture)
+        stamps = [json.loads(line)["stamp_ns"] for line in self.lists.lines]
+        self.assertEqual(stamps, sorted(set(stamps)))
+        turns = sum(1e8 - 2e6 < b - a < 1e8 + 2e6 for a, b in zip(stamps, stamps[1:]))
+        parts = sum(b - a < 9e7 for a, b in zip(stamps, stamps[1:]))
+        if len(stamps) < 55:
+            self.skipTest(f"this machine was too slow: {len(stamps)} lists of 60 turns")
+        print(f"{len(stamps)} lists of 60 turns; {turns} came a turn after the one before")
+        self.assertGreater(parts, 5)
+        self.assertIn("parts of turns a second: detect.lists_per_turn asks", "".join(self.log.lines))
 
 
 if __name__ == "__main__":

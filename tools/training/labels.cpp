@@ -125,7 +125,8 @@ LabelledClusters label_tracks(std::span<const Tracker::Track> tracks,
   std::vector<const Tracker::Track*> surest_first;
   for (const Tracker::Track& track : tracks) {
     const bool is_near = distance_to_box(track.obstacle, base.translation) <= tracking.reach;
-    if (is_near && track.found >= tracking.least_found) surest_first.push_back(&track);
+    if (is_near && track.found >= static_cast<float>(tracking.least_found))
+      surest_first.push_back(&track);
   }
   std::ranges::stable_sort(surest_first, std::ranges::greater(), &Tracker::Track::smoothed);
   LabelledClusters labelled;

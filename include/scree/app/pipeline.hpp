@@ -33,9 +33,11 @@ struct Networks {
 /// sweep itself, and stays out of the map. As long as no IMU has said anything, the lidar's own
 /// odometry stands in for it, and for an encoder. Where neither is heard and the ground does not
 /// show how the lidar moves, each sweep is taken by itself instead, and `odom` is `base`; an
-/// obstacle then keeps its id while it moves little from sweep to sweep. Where a sensor is first
-/// heard, or the lidar's odometry goes on after it did not hold, map and `odom` begin anew. Memory
-/// is taken once, when it is made.
+/// obstacle then keeps its id while it moves little from sweep to sweep. Of a turn that has not
+/// ended only the points go into the map, where IMU or encoder say how the robot moves: what moves,
+/// and what corrects the pose, is found at its end. Where a sensor is first heard, or the lidar's
+/// odometry goes on after it did not hold, map and `odom` begin anew. Memory is taken once, when it
+/// is made.
 class Pipeline {
 public:
   /// @param config_file its folder is searched first for the weights files; it may be empty
@@ -44,7 +46,9 @@ public:
 
   /// Where the IMU's and the encoder's threads put their samples.
   SyncBuffer& sensors() { return *sensors_; }
-  /// @return the list of this sweep; valid until the next call
+  /// @param sweep a turn, or what has come of it before its end
+  /// @return the list of this sweep; valid until the next call. That of a part counts only where it
+  /// has_looked().
   const ObstacleList& process(const Sweep& sweep);
   /// What is free, occupied or unknown around the robot, with the last list; null when lcm.grid is
   /// off, or the list is not from the map's surface. Valid until the next call of process().
@@ -80,14 +84,17 @@ public:
   StageCounts counts() const;
 
 private:
+  void process_turn(const Sweep& sweep);
+  void process_part(const Sweep& sweep);
+  float turns_since_list(const Sweep& sweep);
   void follow_motion(const Sweep& sweep);
   const SyncBuffer* choose_motion() const;
   void clear_tracks();
   void report_setup();
-  void detect_in_map();
-  void add_moving();
+  void detect_in_map(const Sweep& sweep);
+  void find_moving(std::int64_t stamp_ns);
   float ground_at(const Eigen::Vector3d& place) const;
-  void detect_in_sweep(const Pose& pose);
+  void detect_in_sweep(std::int64_t stamp_ns, const Pose& pose);
 
   std::unique_ptr<SyncBuffer> sensors_;
   std::unique_ptr<Mapper> mapper_;
@@ -107,6 +114,8 @@ private:
   const ObstacleGrid* grid_ = nullptr;
   StageTimer timer_;
   bool has_looked_ = false;
+  std::int64_t turn_ns_ = 0;  // what the last turn took
+  bool is_within_turn_ = false;
 };
 
 /// The weights in a file that a setting names.

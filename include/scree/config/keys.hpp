@@ -125,6 +125,11 @@ void for_every_key(AnySettings& settings, Visit&& visit) {
       "what was not seen for so long is forgotten: longer keeps more behind corners, and more of "
       "the pose's drift");
 
+  table = "detect";
+  key("lists_per_turn", settings.detect.lists_per_turn, "", 1, 8,
+      "1, 2, 4 or 8: a list after each such part of a turn, so that what it shows is known sooner; "
+      "each list costs as much as one after a whole turn");
+
   for_each_detect_key("detect.cloud", settings.detect_cloud, visit);
   for_each_detect_key("detect.map", settings.detect_map, visit);
   for_each_detect_key("detect.sweep", settings.detect_sweep, visit);

@@ -249,6 +249,11 @@ struct DetectSettings {
   static DetectSettings for_sweep();
 };
 
+/// What both methods share while driving.
+struct ListSettings {
+  int lists_per_turn = 1;
+};
+
 /// How much a detector has room for.
 struct DetectorLimits {
   std::size_t points = 0;        ///< of a cloud
@@ -308,6 +313,7 @@ struct Settings {
   RobotSettings robot;
   GpioSettings gpio;
   StopSettings stop;
+  ListSettings detect;
   DetectSettings detect_cloud = DetectSettings::for_cloud();
   DetectSettings detect_map = DetectSettings::for_map();
   DetectSettings detect_sweep = DetectSettings::for_sweep();

@@ -47,6 +47,11 @@ public:
     assert(size <= capacity_);
     size_ = size;
   }
+  /// @pre other.size() <= capacity()
+  void copy_from(const FixedVector& other) {
+    resize(other.size());
+    std::copy(other.begin(), other.end(), begin());
+  }
   void assign(std::size_t size, const T& value) {
     resize(size);
     std::fill(begin(), end(), value);

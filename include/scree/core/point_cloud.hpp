@@ -41,6 +41,13 @@ struct PointCloud {
     z.resize(size);
     reflectivity.resize(size);
   }
+  /// @pre other.size() <= capacity()
+  void copy_from(const PointCloud& other) {
+    x.copy_from(other.x);
+    y.copy_from(other.y);
+    z.copy_from(other.z);
+    reflectivity.copy_from(other.reflectivity);
+  }
   /// False when full; the point is then not taken.
   bool push_back(float px, float py, float pz, float preflectivity) {
     return x.push_back(px) && y.push_back(py) && z.push_back(pz) &&

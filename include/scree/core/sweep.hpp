@@ -18,16 +18,19 @@ struct EmptyShot {
   std::int32_t time_ns = 0;  ///< as of points; above zero after the last of them
 };
 
-/// One turn of the lidar: its returns in firing order, in the `lidar` frame.
+/// One turn of the lidar, or what there is of it so far: its returns in firing order, in the
+/// `lidar` frame.
 struct Sweep {
   std::int64_t end_ns = 0;            ///< host time of the last point
+  std::uint64_t turn = 0;             ///< counts the lidar's turns
+  bool ends_turn = true;              ///< else more of this turn will come, together with this
   PointCloud points;                  ///< `lidar` frame, metres
   FixedVector<std::int32_t> time_ns;  ///< of each point, relative to end_ns, zero or below
   FixedVector<std::uint8_t> laser;    ///< of each point: its number in the sensor, 0 to 15
   FixedVector<EmptyShot> empty;       ///< in firing order, `lidar` frame; what fits
   std::uint32_t packets = 0;          ///< data packets that gave it points
   std::uint32_t dropped = 0;          ///< points that did not fit
-  bool is_whole = true;               ///< a full turn, unlike a lidar's first sweep
+  bool is_whole = true;               ///< from its begin, unlike a lidar's first sweep, to its end
 
   Sweep() = default;
   explicit Sweep(std::size_t capacity)
@@ -39,6 +42,19 @@ struct Sweep {
                  std::size_t laser_number) {
     return points.push_back(at.x(), at.y(), at.z(), reflectivity) && time_ns.push_back(t_ns) &&
            laser.push_back(static_cast<std::uint8_t>(laser_number));
+  }
+  /// @pre its points and empty shots fit
+  void copy_from(const Sweep& other) {
+    points.copy_from(other.points);
+    time_ns.copy_from(other.time_ns);
+    laser.copy_from(other.laser);
+    empty.copy_from(other.empty);
+    end_ns = other.end_ns;
+    turn = other.turn;
+    packets = other.packets;
+    dropped = other.dropped;
+    ends_turn = other.ends_turn;
+    is_whole = other.is_whole;
   }
   /// Moves all its times.
   void shift(std::int32_t by_ns) {

@@ -36,6 +36,8 @@ public:
   void update(std::int64_t stamp_ns, std::span<const Obstacle> found,
               const std::function<bool(const Eigen::Vector3d&)>& is_seen_through,
               std::int64_t& next_id);
+  /// Lets what is followed go on as it moved: nothing new is known of it.
+  void predict(std::int64_t stamp_ns);
   void clear() { tracks_.clear(); }
 
   /// Adds the published ones to a list. An obstacle of the list in the same place goes. Where one
@@ -52,7 +54,6 @@ public:
   std::uint64_t dropped() const { return dropped_; }
 
 private:
-  void predict(std::int64_t stamp_ns);
   void associate(std::span<const Obstacle> found, std::int64_t stamp_ns);
   void hand_over(FixedVector<Obstacle>& list, Tracker& standing);
   static Obstacle published(const Track& track);

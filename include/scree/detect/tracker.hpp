@@ -34,13 +34,13 @@ static_assert(std::size_t{kTrackFeatures} <= Features().size(),
 class Tracker {
 public:
   struct Track {
-    Obstacle obstacle;        ///< as found last
-    Features features{};      ///< by TrackFeature
-    float confidence = 0;     ///< that it is of its kind, as classified
-    std::uint32_t found = 0;  ///< lists that had it
+    Obstacle obstacle;     ///< as found last
+    Features features{};   ///< by TrackFeature
+    float confidence = 0;  ///< that it is of its kind, as classified
+    float found = 0;       ///< turns of the lidar whose lists had it
+    float doubted = 0;     ///< turns whose lists gave too little confidence, the latest
     std::int64_t found_ns = 0;
     bool is_published = false;
-    bool is_doubted = false;     ///< too little confidence in the last list
     bool is_matched = false;     ///< found in the last list
     bool is_seen_empty = false;  ///< its place, in the last list
 
@@ -57,9 +57,11 @@ public:
   /// @param found every candidate of this list with its confidence, also low ones, in that frame
   /// @param occupancy_at what is known of a point in that frame
   /// @param obstacles those to publish; their ids are the tracks'
+  /// @param turns of the lidar since the last list, 1 at most: what the settings say of lists is
+  /// meant of turns
   void update(std::int64_t stamp_ns, const Eigen::Vector3d& robot, std::span<const Obstacle> found,
               const std::function<Occupancy(const Eigen::Vector3d&)>& occupancy_at,
-              FixedVector<Obstacle>& obstacles);
+              FixedVector<Obstacle>& obstacles, float turns = 1);
   void set(const TrackingSettings& settings) { settings_ = settings; }
   void clear() { tracks_.clear(); }
   /// Forgets the tracks whose obstacles have left.
@@ -93,6 +95,7 @@ private:
   void choose_published();
   void list_near(const Eigen::Vector3d& robot, FixedVector<Obstacle>& obstacles);
 
+  float share_of(float of_a_turn) const;
   void add_found(std::int64_t stamp_ns, const Obstacle& found, Track& track) const;
   static void smooth(Features& features, float positive, float negative, float weight);
   float distance_to_surer(const Track& track) const;
@@ -105,6 +108,7 @@ private:
   FixedVector<Obstacle> published_;
   FragmentMerger fragment_merger_;
   FixedVector<std::int64_t> shown_, shown_before_;  // ids in the list
+  float turns_ = 1;                                 // since the last list
   std::int64_t next_id_ = 1;
   std::uint64_t dropped_ = 0;
 };

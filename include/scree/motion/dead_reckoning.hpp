@@ -1,9 +1,9 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <boost/container/static_vector.hpp>
 #include <cstdint>
 
-#include "scree/core/fixed_vector.hpp"
 #include "scree/motion/sweep_trajectory.hpp"
 #include "scree/sync/sync_buffer.hpp"
 
@@ -80,7 +80,8 @@ private:
   Eigen::Vector3d rate_ = Eigen::Vector3d::Zero();
   double speed_ = 0;
   bool started_ = false, trusts_wheel_ = true;
-  FixedVector<State> states_{SweepTrajectory::kMaxSteps + 1};  // for the trajectory, oldest first
+  // For the trajectory, oldest first.
+  boost::container::static_vector<State, SweepTrajectory::kMaxSteps + 1> states_;
 };
 
 }  // namespace scree

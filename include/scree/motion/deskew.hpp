@@ -24,6 +24,9 @@ struct DeskewedSweep {
       is_moving;  ///< set by MovingPoints: whether it is on something that moves
   FixedVector<std::uint8_t> is_suspect;  ///< whether it may be the robot's own, see OwnReturns
   FixedVector<EmptyBeam> empty;          ///< same frame
+  // Those before are in the map already, where a part of the turn was looked at before its end.
+  std::size_t fresh_points = 0, fresh_empty = 0;
+  bool begins_turn = true;  ///< whether none of the turn was
   std::size_t dropped = 0;
 
   explicit DeskewedSweep(std::size_t capacity)
@@ -46,13 +49,26 @@ struct DeskewedSweep {
     is_suspect.clear();
     empty.clear();
     dropped = 0;
+    take_all();
   }
+  /// Whatever of the turn was in the map has been forgotten.
+  void take_all() {
+    fresh_points = fresh_empty = 0;
+    begins_turn = true;
+  }
+};
+
+/// How much of a turn is in the map.
+struct TakenTurn {
+  std::uint64_t turn = 0;  ///< see Sweep
+  std::size_t points = 0, empty = 0;
 };
 
 /// Moves every point of a sweep, in the `lidar` frame, to `base` at the sweep's end by the motion
 /// within it. Leaves out points nearer than min_range and farther than max_range, and the robot's
 /// own.
+/// @param taken of this turn or of another one
 void deskew(const Sweep& sweep, const LidarSettings& lidar, const SweepTrajectory& trajectory,
-            OwnReturns& own, DeskewedSweep& out);
+            OwnReturns& own, DeskewedSweep& out, const TakenTurn& taken = {});
 
 }  // namespace scree

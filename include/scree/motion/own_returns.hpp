@@ -37,6 +37,8 @@ public:
   /// half a metre off
   /// @return whether a box was found
   bool end_sweep(float way);
+  /// As if no return of the sweep under way had come: they come again.
+  void forget_sweep();
 
   std::span<const BodyBox> found() const { return {found_.data(), found_.size()}; }
   /// Returns in boxes within the last sweep.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "scree/config/settings.hpp"
 #include "scree/core/stage_times.hpp"
@@ -34,6 +35,11 @@ public:
     add(sweep, sensors, none);
   }
 
+  /// Adds what has come of a turn before it ends: laid into the map where the sensors say that the
+  /// robot is. What corrects their motion waits for the turn's end.
+  /// @param sensors as in add()
+  void add_part(const Sweep& sweep, const SyncBuffer& sensors, StageTimer& timer);
+
   bool registers() const { return registers_; }
   /// Begins anew, at the origin: what comes next does not follow on what came before.
   void restart();
@@ -42,8 +48,8 @@ public:
   /// Takes a sweep by itself, as if the robot stood still. The map stays as it is.
   void take_still(const Sweep& sweep);
 
-  /// `base` in the map's frame at the end of the last sweep.
-  const Pose& pose() const { return filter_.pose(); }
+  /// `base` in the map's frame at the end of the last sweep, or of the last part of it.
+  const Pose& pose() const { return part_pose_ ? *part_pose_ : filter_.pose(); }
   /// The map's frame in `odom`, as far as it is known by now.
   const Pose& to_odom() const { return levelling_.to_odom(); }
   const PoseFilter& filter() const { return filter_; }
@@ -66,6 +72,8 @@ public:
   const DeskewedSweep& sweep() const { return sweep_; }
 
 private:
+  static std::int64_t begin_of(const Sweep& sweep);
+  double reach() const;
   void detect_slip(const SyncBuffer& sensors, std::int64_t end_ns);
   bool notice_own_returns();
   void add_surfels();
@@ -83,7 +91,9 @@ private:
   SweepTrajectory trajectory_;
   OwnReturns own_returns_;
   DeskewedSweep sweep_;
+  TakenTurn taken_;
   PoseFilter filter_;
+  std::optional<Pose> part_pose_;
   Levelling levelling_;
   Registration registration_;
   SurfelMap surfels_;

@@ -28,8 +28,8 @@ class RollingMap {
 public:
   RollingMap(const MapSettings& settings, std::size_t max_voxels);
 
-  /// Adds a sweep that ended at `end_ns`, seen from `pose` (`base` in the map's frame), and removes
-  /// the voxels that are out of date or out of reach.
+  /// Adds what is fresh of a sweep that ended at `end_ns`, seen from `pose` (`base` in the map's
+  /// frame), and removes the voxels that are out of date or out of reach.
   /// @param reach metres from `base`; what lies farther off is not taken
   void add(const DeskewedSweep& sweep, const Pose& pose, std::int64_t end_ns,
            double reach = std::numeric_limits<double>::infinity());

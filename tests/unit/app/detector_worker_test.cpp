@@ -41,11 +41,12 @@ protected:
     return has_looked_ ? &list_ : nullptr;
   }
   /// Pushes a sweep that arrives now. @return its time of arrival
-  std::int64_t push_sweep(std::int64_t end_ns = 0) {
+  std::int64_t push_sweep(std::int64_t end_ns = 0, bool ends_turn = true) {
     TimedSweep* item = nullptr;
     EXPECT_TRUE(until([&] { return (item = sweeps_.acquire()) != nullptr; }));
     const std::int64_t now_ns = steady_ns();
     item->sweep.end_ns = end_ns;
+    item->sweep.ends_turn = ends_turn;
     item->arrival_ns = now_ns;
     sweeps_.push(item);
     return now_ns;
@@ -68,6 +69,16 @@ protected:
     TimedObstacleList* list = nullptr;
     EXPECT_TRUE(until([&] { return (list = lists_.pop()) != nullptr; }));
     return list;
+  }
+
+  /// @param stamps of the lists that come next
+  void expect_lists(std::initializer_list<std::int64_t> stamps) {
+    for (const std::int64_t stamp_ns : stamps) {
+      TimedObstacleList* timed = next_list();
+      ASSERT_NE(timed, nullptr);
+      EXPECT_EQ(timed->list.stamp_ns, stamp_ns);
+      lists_.release(timed);
+    }
   }
 
   SweepPool sweeps_{kSweeps, [] { return TimedSweep(); }};
@@ -143,13 +154,21 @@ TEST_F(DetectorWorkerTest, ASlowDetectorLeavesOutTheOldestSweepThatWaits) {
   push_sweep(kEndNs + 2);
   EXPECT_EQ(sweeps_.acquire(), nullptr);
   is_held_ = false;
-  for (const std::int64_t end_ns : {kEndNs, kEndNs + 2}) {
-    TimedObstacleList* timed = next_list();
-    ASSERT_NE(timed, nullptr);
-    EXPECT_EQ(timed->list.stamp_ns, end_ns);
-    lists_.release(timed);
-  }
+  expect_lists({kEndNs, kEndNs + 2});
   EXPECT_EQ(worker_->sweeps_skipped(), 1U);
+}
+
+TEST_F(DetectorWorkerTest, APartOfATurnIsLeftOutWhereSomethingNewerWaits) {
+  is_held_ = true;
+  start();
+  push_sweep(kEndNs, false);
+  ASSERT_TRUE(until([&] { return processed_ == 1; }));
+  push_sweep(kEndNs + 1, false);
+  push_sweep(kEndNs + 2);
+  is_held_ = false;
+  expect_lists({kEndNs, kEndNs + 2});
+  EXPECT_EQ(worker_->parts_skipped(), 1U);
+  EXPECT_EQ(worker_->sweeps_skipped(), 0U);
 }
 
 TEST_F(DetectorWorkerTest, ASweepWaitsForMotionUntilTheLimit) {

@@ -54,10 +54,10 @@ private:
 class LidarReaderTest : public ::testing::Test {
 protected:
   LidarReaderTest() {
-    settings_.address = "127.0.0.1";
-    settings_.port = free_port();
-    settings_.position_port = free_port();
-    auto ports = LidarPorts::open(settings_);
+    settings_.lidar.address = "127.0.0.1";
+    settings_.lidar.port = free_port();
+    settings_.lidar.position_port = free_port();
+    auto ports = LidarPorts::open(settings_.lidar);
     EXPECT_TRUE(ports) << ports.error().message;
     reader_.emplace(settings_, std::move(*ports), pulses_.line(), sweeps_);
     thread_ = std::thread([this] { reader_->run(); });
@@ -76,7 +76,7 @@ protected:
     return false;
   }
 
-  LidarSettings settings_;
+  Settings settings_;
   PulsePipe pulses_;
   SweepPool sweeps_{3, [] { return TimedSweep(); }};
   std::optional<LidarReader> reader_;
@@ -84,7 +84,7 @@ protected:
 };
 
 TEST_F(LidarReaderTest, PulsesLockTheLidarsClock) {
-  const SendingLidar lidar(settings_.port);
+  const SendingLidar lidar(settings_.lidar.port);
   ASSERT_TRUE(
       until([](const LidarStatus& status) { return status.clock.state == ClockState::estimated; }));
   EXPECT_EQ(reader_->status().pulses, 0U);
@@ -98,7 +98,7 @@ TEST_F(LidarReaderTest, PulsesLockTheLidarsClock) {
 TEST_F(LidarReaderTest, GoesOnWithoutTheLineWhenItsChipIsGoneAndTakesItUpAgain) {
   pulses_.take_away();
   EXPECT_TRUE(until([](const LidarStatus& status) { return status.is_pps_lost; }));
-  const SendingLidar lidar(settings_.port);
+  const SendingLidar lidar(settings_.lidar.port);
   EXPECT_TRUE(until([](const LidarStatus& status) { return status.lidar.sweeps > 0; }));
   EXPECT_EQ(reader_->status().pulses, 0U);
   pulses_.plug_in();
@@ -108,9 +108,9 @@ TEST_F(LidarReaderTest, GoesOnWithoutTheLineWhenItsChipIsGoneAndTakesItUpAgain) 
 }
 
 TEST_F(LidarReaderTest, APulseThatTheLidarDoesNotHearMeansNothing) {
-  const SendingLidar lidar(settings_.port);
+  const SendingLidar lidar(settings_.lidar.port);
   constexpr std::array<std::uint8_t, 512> kWithoutPulse{};
-  LocalSender(settings_.position_port)(kWithoutPulse);
+  LocalSender(settings_.lidar.position_port)(kWithoutPulse);
   ASSERT_TRUE(until([](const LidarStatus& status) {
     return status.has_no_pulse && status.clock.state == ClockState::estimated;
   }));

@@ -86,6 +86,8 @@ TEST(Settings, MistakesNameFileLineKeyAndWhatIsAccepted) {
               AllOf(HasSubstr("robot.toml:2"), HasSubstr("ground_outer")));
   EXPECT_THAT(error_of("[detect.map]\n\nleaf_size = 0.0001\n"),
               AllOf(HasSubstr("robot.toml:3"), HasSubstr("must be 0 or at least 0.001")));
+  EXPECT_THAT(error_of("[detect]\nlists_per_turn = 3\n"),
+              HasSubstr("robot.toml:2: detect.lists_per_turn must be 1, 2, 4 or 8"));
   EXPECT_THAT(error_of("[lidar]\nport = 1\nport = 2\n"),
               AllOf(HasSubstr("robot.toml:3"), HasSubstr("port")));
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
 #include "scree/detect/tracker.hpp"
@@ -20,6 +21,7 @@ protected:
   Occupancy occupancy_ = Occupancy::occupied;
   Eigen::Vector3d robot_ = Eigen::Vector3d::Zero();
   std::int64_t now_ns_ = kStart;
+  float turns_ = 1;  // from list to list
 
   static Obstacle at(double x, double y, float confidence = 0.9F) {
     Obstacle obstacle;
@@ -43,8 +45,8 @@ protected:
   const FixedVector<Obstacle>& update(const std::vector<Obstacle>& found, int times = 1) {
     for (int i = 0; i < times; ++i) {
       tracker_.update(
-          now_ns_ += kList, robot_, found, [this](const Eigen::Vector3d&) { return occupancy_; },
-          list_);
+          now_ns_ += std::llround(turns_ * kList), robot_, found,
+          [this](const Eigen::Vector3d&) { return occupancy_; }, list_, turns_);
     }
     return list_;
   }

@@ -311,6 +311,25 @@ TEST_F(TrackerTest, GoesOnWhenTheClockIsSet) {
   }
 }
 
+/// Also when a turn has several lists.
+TEST_F(TrackerTest, AnObstacleComesAndGoesInAsManyTurns) {
+  const int turns_to_come = updates_until(1, {at(3, 1, 0.5F)}), turns_to_go = updates_until(0, {});
+  occupancy_ = Occupancy::free;
+  updates_until(1, {at(3, 1, 0.5F)});
+  const int turns_to_go_empty = updates_until(0, {});
+  for (const int lists : {2, 4, 8}) {
+    tracker_.clear();
+    occupancy_ = Occupancy::occupied;
+    turns_ = 1 / static_cast<float>(lists);
+    SCOPED_TRACE(testing::Message() << lists << " lists a turn");
+    EXPECT_EQ(updates_until(1, {at(3, 1, 0.5F)}), lists * (turns_to_come - 1) + 1);
+    EXPECT_NEAR(updates_until(0, {}), lists * turns_to_go, lists);
+    occupancy_ = Occupancy::free;
+    updates_until(1, {at(3, 1, 0.5F)});
+    EXPECT_NEAR(updates_until(0, {}), lists * turns_to_go_empty, lists);
+  }
+}
+
 TEST_F(TrackerTest, ATracksFeaturesAreWhatTheySayTheyAre) {
   Obstacle first = at(3, 1, 0.8F), then = at(3, 1, 0.5F), surer = at(3.6, 1.8);
   then.height = 0.3;
@@ -319,7 +338,7 @@ TEST_F(TrackerTest, ATracksFeaturesAreWhatTheySayTheyAre) {
   update({then, surer});
   ASSERT_EQ(tracker_.tracks().size(), 2U);
   const Tracker::Track& track = tracker_.tracks()[0];
-  EXPECT_EQ(track.found, 2U);
+  EXPECT_EQ(track.found, 2);
   // The first two answers count alike.
   EXPECT_NEAR(track.features[track_positive], 0.65, 1e-6);
   EXPECT_EQ(track.features[track_negative], 0);

@@ -168,7 +168,7 @@ protected:
     truth_.poses = {{kStamp, base_}};
   }
 
-  void add(double x, double height, float confidence = 0.9F, std::uint32_t found = 5) {
+  void add(double x, double height, float confidence = 0.9F, float found = 5) {
     Tracker::Track track;
     track.obstacle.center = {x, 0, 0};
     track.obstacle.extent = {0.4, 0.4, 0.4};

@@ -20,23 +20,16 @@ struct Seen {
   std::int64_t begin_ns, end_ns;
   std::size_t points;
   std::uint32_t packets;
-  bool is_whole;
+  bool is_whole, ends_turn;
+  std::uint64_t turn;
 };
 
 /// A VLP-16 that turns evenly and sees a wall 5 m away, and the stream that listens to it.
 class TurningSensor {
 public:
-  explicit TurningSensor(const LidarSettings& settings = {})
-      : stream_(std::make_unique<LidarStream>(settings, [this](Sweep& sweep) {
-          seen.push_back({sweep.end_ns + (sweep.points.empty() ? 0 : sweep.time_ns[0]),
-                          sweep.end_ns, sweep.points.size(), sweep.packets, sweep.is_whole});
-          for (std::size_t i = 1; i < sweep.time_ns.size(); ++i) {
-            EXPECT_GE(sweep.time_ns[i], sweep.time_ns[i - 1]);
-          }
-          if (!sweep.time_ns.empty()) {
-            EXPECT_EQ(sweep.time_ns.back(), 0);
-          }
-        })) {}
+  explicit TurningSensor(const LidarSettings& settings = {}, int parts = 1)
+      : stream_(std::make_unique<LidarStream>(
+            settings, [this](Sweep& sweep) { see(sweep); }, LidarStream::OnPacket(), parts)) {}
 
   ReturnMode mode = ReturnMode::strongest;
   Product product = Product::vlp16;
@@ -79,6 +72,18 @@ public:
   std::int64_t elapsed_ns() const { return elapsed_ns_; }
 
 private:
+  void see(const Sweep& sweep) {
+    seen.push_back({sweep.end_ns + (sweep.points.empty() ? 0 : sweep.time_ns[0]), sweep.end_ns,
+                    sweep.points.size(), sweep.packets, sweep.is_whole, sweep.ends_turn,
+                    sweep.turn});
+    for (std::size_t i = 1; i < sweep.time_ns.size(); ++i) {
+      EXPECT_GE(sweep.time_ns[i], sweep.time_ns[i - 1]);
+    }
+    if (!sweep.time_ns.empty()) {
+      EXPECT_EQ(sweep.time_ns.back(), 0);
+    }
+  }
+
   std::int64_t elapsed_ns_ = 0;
   std::unique_ptr<LidarStream> stream_;
 };

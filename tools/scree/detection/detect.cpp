@@ -136,7 +136,9 @@ void detect_in_capture(const DetectOptions& options) {
   std::size_t sweeps = 0;
   bool has_grid = false;
   capture.play([&](const Sweep& sweep) {
-    writer.write(pipeline.process(sweep));
+    const ObstacleList& list = pipeline.process(sweep);
+    if (!sweep.ends_turn && !pipeline.has_looked()) return;
+    writer.write(list);
     if (grids && pipeline.grid() != nullptr) {
       grids->write(*pipeline.grid());
       has_grid = true;

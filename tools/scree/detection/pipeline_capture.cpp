@@ -60,9 +60,11 @@ void PipelineCapture::play(const std::function<void(const Sweep&)>& process) {
     setup.add(pipeline_.setup());
   });
   std::int64_t now_ns = 0;
-  stream_.emplace(settings_.lidar, [&](Sweep& sweep) {
+  const auto on_sweep = [&](Sweep& sweep) {
     if (!sweep.points.empty()) waiting.push(sweep, now_ns);
-  });
+  };
+  stream_.emplace(settings_.lidar, on_sweep, velodyne::LidarStream::OnPacket(),
+                  settings_.detect.lists_per_turn);
   lidar_.play(*stream_, {}, [&](std::int64_t arrival_ns) {
     now_ns = arrival_ns;
     motion_.play_until(arrival_ns);

@@ -43,15 +43,7 @@ public:
 private:
   static Sweep copy(const Sweep& sweep) {
     Sweep copied(std::max(sweep.points.size(), sweep.empty.size()));
-    for (std::size_t i = 0; i < sweep.points.size(); ++i) {
-      copied.push_back({sweep.points.x[i], sweep.points.y[i], sweep.points.z[i]},
-                       sweep.points.reflectivity[i], sweep.time_ns[i], sweep.laser[i]);
-    }
-    for (const EmptyShot& shot : sweep.empty) copied.empty.push_back(shot);
-    copied.end_ns = sweep.end_ns;
-    copied.packets = sweep.packets;
-    copied.dropped = sweep.dropped;
-    copied.is_whole = sweep.is_whole;
+    copied.copy_from(sweep);
     return copied;
   }
 

@@ -50,8 +50,9 @@ Ground ground_of_capture(const PictureOptions& options) {
   capture.play([&](const Sweep& sweep) {
     // The last sweep may be a part of a turn: of no use by itself.
     if (is_whole && !sweep.is_whole && !pipeline.uses_map()) return;
-    is_whole = sweep.is_whole;
     pipeline.process(sweep);
+    if (!sweep.ends_turn) return;
+    is_whole = sweep.is_whole;
     ground.stamp_ns = sweep.end_ns;
   });
   const Mapper& mapper = pipeline.mapper();

@@ -112,11 +112,14 @@ void gather_capture(const std::filesystem::path& capture, const std::filesystem:
     const auto begin = std::chrono::steady_clock::now();
     const ObstacleList& list = pipeline.process(sweep);
     const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
+    if (!sweep.ends_turn && !pipeline.has_looked()) return;
     data.add(list);
     data.add_sweep(pipeline.uses_map() ? pipeline.mapper().sweep().points : pipeline.ground());
     if (pipeline.grid() != nullptr) data.add(*pipeline.grid());
     data.add("time for a list, on this computer", "ms", list.stamp_ns, took.count());
-    data.add("returns in a sweep", "", list.stamp_ns, static_cast<double>(sweep.points.size()));
+    if (sweep.ends_turn) {
+      data.add("returns in a sweep", "", list.stamp_ns, static_cast<double>(sweep.points.size()));
+    }
     const PoseFilter& filter = pipeline.mapper().filter();
     if (pipeline.uses_map()) {
       data.add("position, standard deviation", "m", list.stamp_ns,

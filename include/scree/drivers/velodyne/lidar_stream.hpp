@@ -20,7 +20,8 @@ struct LidarCounters {
   std::array<std::uint64_t, kRefusals> refused{};     ///< by Refusal; [none] stays 0
   std::array<std::uint64_t, 3> by_mode{};             ///< accepted: strongest, last, dual
   std::uint64_t lost = 0;                             ///< packets missing between accepted ones
-  std::uint64_t sweeps = 0;                           ///< handed out
+  std::uint64_t sweeps = 0;                           ///< handed out, each the end of a turn
+  std::uint64_t parts = 0;                            ///< handed out before the end of their turn
   std::uint64_t dropped = 0;                          ///< points beyond a sweep's capacity
   std::uint64_t device_restarts = 0, host_steps = 0;  ///< see DeviceClock
 
@@ -48,7 +49,9 @@ public:
 
   /// `on_sweep` may swap the sweep with another one of kSweepCapacity. Ranges are not limited and
   /// the mount is not applied here.
-  LidarStream(const LidarSettings& settings, OnSweep on_sweep, OnPacket on_packet = {});
+  /// @param parts of a turn, see SweepBuilder
+  LidarStream(const LidarSettings& settings, OnSweep on_sweep, OnPacket on_packet = {},
+              int parts = 1);
   LidarStream(const LidarStream&) = delete;
   LidarStream& operator=(const LidarStream&) = delete;
 
@@ -77,6 +80,7 @@ private:
     std::int64_t duration_ns;  ///< until the next packet's time stamp, when none is lost
   };
 
+  void hand_out(Sweep& sweep);
   void refuse(Refusal reason) { ++counters_.refused[static_cast<std::size_t>(reason)]; }
   void hold(Bytes packet, std::int64_t arrival_ns);
   void release(bool accept_them);
