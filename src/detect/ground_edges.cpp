@@ -11,6 +11,7 @@ namespace {
 
 constexpr float kLeastStep = 0.15F;    // metres
 constexpr float kLeastSlope = 0.5F;    // of the way to the other level: 27 degrees
+constexpr float kBend = 0.1F;          // metres a metre that ground which is not seen may bend down
 constexpr float kFarthest = 3;         // metres beyond the ground that are looked at
 constexpr float kFarthestStep = 1.5F;  // metres to the other level of a steep step
 constexpr float kClutter = 0.05F;      // metres: what is higher and no ground is an obstacle
@@ -182,8 +183,9 @@ GroundEdges::Beyond GroundEdges::look(std::size_t cell, int along_x, int along_y
     if (surface_->points_in(at) == 0) {
       if (beams_->lost_beams(at) < kFewestBeams) continue;
       if (unseen.cells == 0) unseen.cells = i;
-      const float depth = level - beams_->lowest_beam(at);
-      if (depth < kLeastStep || plane.cells < kDense) continue;
+      // Ground that rises levels off sooner or later.
+      const float depth = std::min(level, plane.height) - beams_->lowest_beam(at);
+      if (depth < kLeastStep + kBend * way || plane.cells < kDense) continue;
       unseen.step = std::min(unseen.step, -depth);
       continue;
     }

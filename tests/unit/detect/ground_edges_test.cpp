@@ -139,17 +139,21 @@ TEST_F(GroundEdgesTest, WhereNothingIsSeenLostBeamsTellOfAShadow) {
   const auto ground = [](float x, float) { return x < 2 ? 0.0F : std::nanf(""); };
   PointCloud cloud = shaped(ground);
   EXPECT_TRUE(edges_of(cloud).empty()) << "beams that are not known say nothing";
-  std::vector<PassingBeam> lost;
-  const Eigen::Vector3f sensor(-6, 0, 1);
-  for (float y = -4; y < 4; y += 0.02F) {
-    for (float x = 2.1F; x < 3.5F; x += 0.2F) {
-      lost.push_back({sensor, (Eigen::Vector3f(x, y, 0) - sensor).normalized(), 1000});
+  const auto lost_from = [](float sensor_x) {
+    std::vector<PassingBeam> lost;
+    const Eigen::Vector3f sensor(sensor_x, 0, 1);
+    for (float y = -4; y < 4; y += 0.02F) {
+      for (float x = 2.1F; x < 3.5F; x += 0.2F) {
+        lost.push_back({sensor, (Eigen::Vector3f(x, y, 0) - sensor).normalized(), 1000});
+      }
     }
-  }
+    return lost;
+  };
   // The raster ends with the points; two far beyond widen it.
   cloud.push_back(6, -5, 0, 0);
   cloud.push_back(6, 5, 0, 0);
-  const auto edges = edges_of(cloud, lost);
+  EXPECT_TRUE(edges_of(cloud, lost_from(-8)).empty()) << "so flat a beam passes gentle slopes, too";
+  const auto edges = edges_of(cloud, lost_from(-4));
   ASSERT_EQ(edges.size(), 1U);
   EXPECT_EQ(edges[0].evidence, Evidence::shadow);
   EXPECT_LT(edges[0].step, -0.15);
