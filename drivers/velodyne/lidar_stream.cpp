@@ -156,8 +156,8 @@ void LidarStream::accept(Bytes packet, std::int64_t arrival_ns) {
   const bool started_over = clock_.update(sent_ns % kHourNs, arrival_ns);
   counters_.device_restarts = clock_.device_restarts();
   counters_.host_steps = clock_.host_steps();
-  if (started_over || since_ns < 0) {
-    builder_.finish();
+  if (counters_.accepted > 0 && (started_over || since_ns < 0)) {
+    builder_.start_over();
     previous_.reset();
   }
 

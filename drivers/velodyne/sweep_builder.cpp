@@ -109,6 +109,12 @@ void SweepBuilder::finish() {
   hand_out(sweep_);
   sweep_.clear();
   ++turn_;
+  started_over_ = false;
+}
+
+void SweepBuilder::start_over() {
+  finish();
+  started_over_ = true;
 }
 
 void SweepBuilder::hand_out(Sweep& sweep) {
@@ -116,6 +122,7 @@ void SweepBuilder::hand_out(Sweep& sweep) {
   sweep.shift(-static_cast<std::int32_t>(end_ns - begin_ns_));
   sweep.end_ns = end_ns + to_host_ns_;
   sweep.turn = turn_;
+  sweep.started_over = started_over_;
   on_sweep_(sweep);
 }
 

@@ -156,6 +156,7 @@ Refusal ImuStream::check_sequence(const Measurement& measurement, std::int64_t a
 
 void ImuStream::take_inertial(const Measurement& measurement, const Arrival& arrival) {
   const SampleClock::Stamp stamp = clock_.stamp(measurement, 1 + missing_, arrival);
+  const bool started_over = stamp.started_over && counters_.samples > 0;
   if (stamp.started_over) {
     missing_ = 0;  // the counter started over with the device, or who knows for how long it was off
     last_t_ns_.reset();
@@ -164,7 +165,7 @@ void ImuStream::take_inertial(const Measurement& measurement, const Arrival& arr
   const std::int64_t interval_ns = increment_interval(measurement, stamp.elapsed_ns);
   const std::int64_t t_ns = last_t_ns_ ? std::max(stamp.t_ns, *last_t_ns_ + 1) : stamp.t_ns;
   last_t_ns_ = t_ns;
-  hand_out(measurement, t_ns, interval_ns);
+  hand_out(measurement, t_ns, interval_ns, started_over);
 }
 
 std::int64_t ImuStream::increment_interval(const Measurement& measurement,
@@ -181,11 +182,12 @@ std::int64_t ImuStream::increment_interval(const Measurement& measurement,
 }
 
 void ImuStream::hand_out(const Measurement& measurement, std::int64_t t_ns,
-                         std::int64_t interval_ns) {
+                         std::int64_t interval_ns, bool started_over) {
   if (on_measurement_) on_measurement_(t_ns, measurement);
   ImuSample sample = to_sample(measurement, interval_ns);
   if (!sample.has_orientation && !sample.has_rate && !sample.has_acceleration) return;
   sample.t_ns = t_ns;
+  sample.started_over = started_over;
   ++counters_.samples;
   counters_.oriented += sample.has_orientation ? 1 : 0;
   const bool is_useful = counters_.oriented == 0 ? sample.has_rate : sample.has_orientation;

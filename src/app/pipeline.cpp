@@ -3,6 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <limits>
 #include <utility>
 
@@ -85,12 +86,13 @@ const ObstacleList& Pipeline::process(const Sweep& sweep) {
   timer_.start();
   sensors_->gather();
   grid_ = nullptr;
+  turns_ = turns_since_list(sweep);
+  list_.stamp_ns = sweep.end_ns;
   if (sweep.ends_turn) {
     process_turn(sweep);
   } else {
     process_part(sweep);
   }
-  list_.stamp_ns = sweep.end_ns;
   return list_;
 }
 
@@ -106,9 +108,9 @@ void Pipeline::process_turn(const Sweep& sweep) {
   // A map that has just begun has confirmed nothing yet.
   uses_map_ = motion_ != nullptr && (!sweep_detector_ || !mapper_->map().cloud().empty());
   if (uses_map_) {
-    detect_in_map(sweep);
+    detect_in_map(true);
   } else {
-    detect_in_sweep(sweep.end_ns, motion_ != nullptr ? mapper_->pose() : Pose());
+    detect_in_sweep(motion_ != nullptr ? mapper_->pose() : Pose());
   }
   report_setup();
   has_looked_ = sweep.is_whole && !ground().empty();
@@ -118,7 +120,7 @@ void Pipeline::process_part(const Sweep& sweep) {
   has_looked_ = uses_map_ && motion_ == sensors_.get() && sweep.is_whole;
   if (!has_looked_) return list_.obstacles.clear();
   mapper_->add_part(sweep, *motion_, timer_);
-  detect_in_map(sweep);
+  detect_in_map(false);
   has_looked_ = !ground().empty();
 }
 
@@ -139,7 +141,8 @@ void Pipeline::follow_motion(const Sweep& sweep) {
   timer_.done(Stage::setup);
   const SyncBuffer* const before = std::exchange(motion_, choose_motion());
   if (sensors_->has_motion()) sweep_detector_.reset();  // gives its memory back, once
-  const bool goes_on = motion_ == before && (follows || sensors_->has_motion());
+  const bool goes_on =
+      motion_ == before && (follows || sensors_->has_motion()) && !starts_over(sweep, follows);
   if (motion_ != nullptr && has_map_ && !goes_on) {
     mapper_->restart();
     clear_tracks();
@@ -148,6 +151,20 @@ void Pipeline::follow_motion(const Sweep& sweep) {
     clear_tracks();
   }
   has_map_ = has_map_ || motion_ != nullptr;
+}
+
+/// Whether the lidar has started over, and the IMU with it: both were off, or are played again, so
+/// that nobody knows how the robot moved meanwhile. Without an IMU the ground tells.
+bool Pipeline::starts_over(const Sweep& sweep, bool follows) {
+  constexpr std::int64_t kTogetherNs = 2'000'000'000;
+  if (sweep.started_over) lidar_restart_ns_ = sweep.end_ns;
+  if (lidar_restart_ns_ == 0) return false;
+  const auto is_near = [&](std::int64_t t_ns) {
+    return std::abs(t_ns - lidar_restart_ns_) < kTogetherNs;
+  };
+  const bool is_unknown = sensors_->imu().empty() ? !follows : is_near(sensors_->imu_restart_ns());
+  if (is_unknown || !is_near(sweep.end_ns)) lidar_restart_ns_ = 0;
+  return is_unknown;
 }
 
 /// Null where nothing tells how the robot moves.
@@ -171,8 +188,8 @@ void Pipeline::report_setup() {
   }
 }
 
-/// @param sweep that the map got last
-void Pipeline::detect_in_map(const Sweep& sweep) {
+/// @param ends_turn else what moves is not looked for
+void Pipeline::detect_in_map(bool ends_turn) {
   const RollingMap& map = mapper_->map();
   tracker_.remove_if([this](const Obstacle& obstacle) {
     return mapper_->remove_left(obstacle, moving_tracker_.was_left(obstacle));
@@ -183,13 +200,13 @@ void Pipeline::detect_in_map(const Sweep& sweep) {
   const Pose cloud_in_map{map.origin(), Eigen::Quaterniond::Identity()};
   for (Obstacle& obstacle : found_) move_into_parent(cloud_in_map, obstacle);
   tracker_.update(
-      sweep.end_ns, mapper_->pose().translation, {found_.data(), found_.size()},
+      list_.stamp_ns, mapper_->pose().translation, {found_.data(), found_.size()},
       [&map](const Eigen::Vector3d& place) { return map.occupancy_at(place); }, list_.obstacles,
-      turns_since_list(sweep));
-  if (sweep.ends_turn) {
-    find_moving(sweep.end_ns);
+      turns_);
+  if (ends_turn) {
+    find_moving();
   } else {
-    moving_tracker_.predict(sweep.end_ns);
+    moving_tracker_.predict(list_.stamp_ns);
   }
   moving_tracker_.add_to(list_.obstacles, tracker_);
   list_.pose = mapper_->to_odom() * mapper_->pose();
@@ -202,7 +219,7 @@ void Pipeline::detect_in_map(const Sweep& sweep) {
 }
 
 /// Follows what moves in the sweep.
-void Pipeline::find_moving(std::int64_t stamp_ns) {
+void Pipeline::find_moving() {
   const RollingMap& map = mapper_->map();
   const MovingPoints& moving = mapper_->moving();
   moving_boxes_.clear();
@@ -212,7 +229,7 @@ void Pipeline::find_moving(std::int64_t stamp_ns) {
   }
   std::int64_t next_id = tracker_.next_id();
   moving_tracker_.update(
-      stamp_ns, moving_boxes_.found(),
+      list_.stamp_ns, moving_boxes_.found(),
       [&map](const Eigen::Vector3d& place) { return map.is_seen_through(place); }, next_id);
   tracker_.set_next_id(next_id);
 }
@@ -229,14 +246,14 @@ float Pipeline::ground_at(const Eigen::Vector3d& place) const {
 }
 
 /// @param pose of `base` in `odom`
-void Pipeline::detect_in_sweep(std::int64_t stamp_ns, const Pose& pose) {
+void Pipeline::detect_in_sweep(const Pose& pose) {
   const DeskewedSweep& still = mapper_->sweep();
   sweep_detector_->detect(
       {.points = still.points, .origins = still.origins, .robot = Eigen::Vector2f::Zero()}, found_,
       timer_);
   sweep_tracker_.set_next_id(tracker_.next_id());
   sweep_tracker_.update(
-      stamp_ns, Eigen::Vector3d::Zero(), {found_.data(), found_.size()},
+      list_.stamp_ns, Eigen::Vector3d::Zero(), {found_.data(), found_.size()},
       [](const Eigen::Vector3d&) { return Occupancy::unknown; }, list_.obstacles);
   tracker_.set_next_id(sweep_tracker_.next_id());
   list_.pose = pose;

@@ -80,6 +80,7 @@ bool SyncBuffer::put(const EncoderSample& sample) {
 
 bool SyncBuffer::accept(ImuSample sample) {
   if (!is_sound(sample)) return false;
+  if (sample.started_over) imu_restart_ns_ = sample.t_ns;
   if (is_set_back(imu_, sample)) {
     imu_.clear();
     attitude_.restart();

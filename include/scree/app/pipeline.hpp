@@ -89,12 +89,13 @@ private:
   float turns_since_list(const Sweep& sweep);
   void follow_motion(const Sweep& sweep);
   const SyncBuffer* choose_motion() const;
+  bool starts_over(const Sweep& sweep, bool follows);
   void clear_tracks();
   void report_setup();
-  void detect_in_map(const Sweep& sweep);
-  void find_moving(std::int64_t stamp_ns);
+  void detect_in_map(bool ends_turn);
+  void find_moving();
   float ground_at(const Eigen::Vector3d& place) const;
-  void detect_in_sweep(std::int64_t stamp_ns, const Pose& pose);
+  void detect_in_sweep(const Pose& pose);
 
   std::unique_ptr<SyncBuffer> sensors_;
   std::unique_ptr<Mapper> mapper_;
@@ -114,8 +115,10 @@ private:
   const ObstacleGrid* grid_ = nullptr;
   StageTimer timer_;
   bool has_looked_ = false;
+  float turns_ = 1;           // since the list before
   std::int64_t turn_ns_ = 0;  // what the last turn took
   bool is_within_turn_ = false;
+  std::int64_t lidar_restart_ns_ = 0;  // of which it is not known yet what it means; 0: of none
 };
 
 /// The weights in a file that a setting names.

@@ -8,7 +8,8 @@ namespace scree {
 /// One measurement of the IMU, in its own axes (`imu` frame).
 /// What the device did not send is absent.
 struct ImuSample {
-  std::int64_t t_ns = 0;  ///< host time of the measurement
+  std::int64_t t_ns = 0;      ///< host time of the measurement
+  bool started_over = false;  ///< the device, since the sample before
   bool has_orientation = false, has_rate = false, has_acceleration = false;
   /// `imu` in a gravity-aligned frame, z up, whose yaw need not be north.
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();

@@ -23,6 +23,7 @@ struct EmptyShot {
 struct Sweep {
   std::int64_t end_ns = 0;            ///< host time of the last point
   std::uint64_t turn = 0;             ///< counts the lidar's turns
+  bool started_over = false;          ///< the lidar, since the sweep before
   bool ends_turn = true;              ///< else more of this turn will come, together with this
   PointCloud points;                  ///< `lidar` frame, metres
   FixedVector<std::int32_t> time_ns;  ///< of each point, relative to end_ns, zero or below
@@ -53,6 +54,7 @@ struct Sweep {
     turn = other.turn;
     packets = other.packets;
     dropped = other.dropped;
+    started_over = other.started_over;
     ends_turn = other.ends_turn;
     is_whole = other.is_whole;
   }

@@ -71,6 +71,8 @@ public:
   const SampleHistory<ImuSample>& imu() const { return imu_; }
   const SampleHistory<EncoderSample>& wheel() const { return wheel_; }
   const HeadingJumpFilter& heading() const { return heading_; }
+  /// When the IMU last started over while it was listened to; 0: never.
+  std::int64_t imu_restart_ns() const { return imu_restart_ns_; }
   /// How much more than those of an IMU the turns between its attitudes err: standard deviation,
   /// rad in a square root of a second.
   double attitude_walk() const { return attitude_walk_; }
@@ -106,6 +108,7 @@ private:
   AttitudeFilter attitude_;
   double attitude_walk_;
   HeadingJumpFilter heading_;
+  std::int64_t imu_restart_ns_ = 0;
   std::atomic<std::uint64_t> dropped_{0}, late_{0};
 };
 

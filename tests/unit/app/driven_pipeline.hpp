@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "scree/app/pipeline.hpp"
 #include "terrain/rough_ground.hpp"
 
@@ -40,7 +42,9 @@ protected:
       ImuSample imu = drive_.imu(0.01 * (k + 1));
       EncoderSample wheel = drive_.wheel(0.01 * (k + 1));
       imu.t_ns += shift_ns_;
+      imu.started_over = std::exchange(imu_starts_over_, false);
       wheel.t_ns += shift_ns_;
+      wheel.distance += wheel_before_;
       pipeline_.sensors().put(imu);
       pipeline_.sensors().put(wheel);
     }
@@ -48,6 +52,14 @@ protected:
     test::scan(ground_, drive_, settings_.lidar, kSweep * sweeps_, sweep_);
     sweep_.end_ns += shift_ns_;
     sweep_.turn = static_cast<std::uint64_t>(sweeps_);
+    sweep_.started_over = std::exchange(lidar_starts_over_, false);
+  }
+
+  /// All is driven again, and sensed a second later.
+  void drive_again() {
+    shift_ns_ += test::nanoseconds(kSweep * sweeps_ + 1) - test::nanoseconds(0);
+    wheel_before_ += drive_.wheel(kSweep * sweeps_).distance;
+    sweeps_ = 0;
   }
 
   test::SimpleDrive drive_ = test::helix(1, 0.2, 0);
@@ -56,6 +68,8 @@ protected:
   Pipeline pipeline_;
   Sweep sweep_{1 << 13};
   std::int64_t shift_ns_ = 0;
+  double wheel_before_ = 0;
+  bool lidar_starts_over_ = false, imu_starts_over_ = false;  // next
   int sweeps_ = 0;
 };
 

@@ -61,6 +61,23 @@ TEST_F(PipelineMap, BeginsAnewWhenAMotionSensorSpeaks) {
   EXPECT_TRUE(pipeline_.uses_map()) << "also when they fall silent";
 }
 
+/// As when a capture is played in a loop.
+TEST_F(PipelineMap, BeginsAnewWhereLidarAndImuStartOverTogether) {
+  const Pose once = go(20).pose;
+  lidar_starts_over_ = imu_starts_over_ = true;
+  drive_again();
+  const Pose again = go(20).pose;
+  EXPECT_LT((again.translation - once.translation).norm(), 0.02);
+  EXPECT_LT(again.rotation.angularDistance(once.rotation), 0.005);
+}
+
+TEST_F(PipelineMap, GoesOnWhereTheLidarAloneStartsOver) {
+  go(20);
+  lidar_starts_over_ = true;
+  const Pose pose = go(20).pose;
+  EXPECT_NEAR(pose.translation.norm(), drive_.base(4).translation.norm(), 0.15);
+}
+
 class PipelineMapWithoutRegistration : public PipelineMap {
 protected:
   PipelineMapWithoutRegistration() : PipelineMap(without()) {}

@@ -73,7 +73,7 @@ TEST_F(PipelineParts, WithoutImuAndEncoderTheyAreNotLookedAt) {
 
 /// When the detector was too slow for some parts, the next one brings their points.
 TEST_F(PipelineParts, OnesThatAreLeftOutCostNothing) {
-  go(20);
+  pose_ = go(20).pose;
   WholePipeline whole;
   whole.go(20);
   for (int i = 0; i < 10; ++i) {

@@ -160,6 +160,8 @@ TEST(LidarStreamFaults, ARestartBeginsANewSweep) {
   EXPECT_GT(sensor.seen.size(), before);
   sensor.send_for(0.8);
   ASSERT_GE(sensor.seen.size(), before + 11);
+  const auto first = std::ranges::find(sensor.seen, true, &Seen::started_over);
+  EXPECT_EQ(first - sensor.seen.begin(), static_cast<std::ptrdiff_t>(before) + 1);
   for (std::size_t i = sensor.seen.size() - 8; i < sensor.seen.size(); ++i) {
     EXPECT_TRUE(sensor.seen[i].is_whole);
     EXPECT_NEAR(static_cast<double>(sensor.seen[i].end_ns - sensor.seen[i].begin_ns), 1e8, 2e5);

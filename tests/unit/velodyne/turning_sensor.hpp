@@ -20,7 +20,7 @@ struct Seen {
   std::int64_t begin_ns, end_ns;
   std::size_t points;
   std::uint32_t packets;
-  bool is_whole, ends_turn;
+  bool is_whole, ends_turn, started_over;
   std::uint64_t turn;
 };
 
@@ -75,7 +75,7 @@ private:
   void see(const Sweep& sweep) {
     seen.push_back({sweep.end_ns + (sweep.points.empty() ? 0 : sweep.time_ns[0]), sweep.end_ns,
                     sweep.points.size(), sweep.packets, sweep.is_whole, sweep.ends_turn,
-                    sweep.turn});
+                    sweep.started_over, sweep.turn});
     for (std::size_t i = 1; i < sweep.time_ns.size(); ++i) {
       EXPECT_GE(sweep.time_ns[i], sweep.time_ns[i - 1]);
     }

@@ -37,6 +37,9 @@ public:
   /// Hands out what there is of the sweep under way, if anything, as the end of a turn.
   void finish();
 
+  /// The same, because the sensor has started over; the next sweep says so.
+  void start_over();
+
   /// How long before the last shot the last return came, by the sensor's clock.
   std::int64_t without_return_ns() const { return last_shot_ns_ - last_return_ns_; }
 
@@ -59,6 +62,7 @@ private:
   std::uint64_t turn_ = 0;  ///< the one under way
   float behind_cut_ = 0;    ///< how far the last shot lay behind the cut; hundredths of a degree
   bool open_ = false, was_cut_ = false;
+  bool started_over_ = false;
   bool begins_at_cut_ = false, ends_at_cut_ = false;
 };
 

@@ -61,7 +61,8 @@ private:
   Refusal check_sequence(const Measurement& measurement, std::int64_t arrival_ns);
   void take_inertial(const Measurement& measurement, const Arrival& arrival);
   std::int64_t increment_interval(const Measurement& measurement, std::int64_t elapsed_ns);
-  void hand_out(const Measurement& measurement, std::int64_t t_ns, std::int64_t interval_ns);
+  void hand_out(const Measurement& measurement, std::int64_t t_ns, std::int64_t interval_ns,
+                bool started_over);
   void update_counters();
   void refuse(Refusal reason) { ++refused_[static_cast<std::size_t>(reason)]; }
 
