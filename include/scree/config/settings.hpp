@@ -176,8 +176,8 @@ struct TrackingSettings {
   std::string network = "network_track.txt";
   std::uint32_t least_found = 2;  ///< lists that have a published obstacle
   double smoothing = 0.4;
-  double appear = 0.45;
-  double disappear = 0.33;
+  double appear = 0.35;
+  double disappear = 0.26;
   double remember = 1.0;
   double reach = 10;
 };
