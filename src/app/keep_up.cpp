@@ -25,10 +25,9 @@ bool KeepUp::update(std::int64_t now_ns, std::uint64_t sweeps, std::uint64_t lef
     sentence = fmt::format(
         "the detector keeps up with {:.1f} of {:.1f} {} a second: {}", (turns - missed) / seconds,
         turns / seconds, has_parts ? "parts of turns" : "turns",
-        has_parts ? "detect.lists_per_turn asks for more lists than this computer "
-                    "can make"
-                  : "this computer is too slow for these settings; the drop-in "
-                    "small.toml needs half, and `scree bench` measures it");
+        has_parts ? "detect.lists_per_turn asks for more lists than this computer can make"
+                  : "this computer is too slow for these settings; the drop-in small.toml "
+                    "needs half, and `scree bench` measures it");
   }
   if (sentence == sentence_) return false;
   sentence_ = std::move(sentence);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -60,10 +59,8 @@ struct ObstacleGrid {
     cell_size = from.cell_size;
     columns = from.columns;
     rows = from.rows;
-    state.resize(from.state.size());
-    std::ranges::copy(from.state, state.begin());
-    ground.resize(from.ground.size());
-    std::ranges::copy(from.ground, ground.begin());
+    state.copy_from(from.state);
+    ground.copy_from(from.ground);
   }
 };
 

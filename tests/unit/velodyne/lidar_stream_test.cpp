@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <random>
 
 #include "scree/core/nanoseconds.hpp"
 #include "turning_sensor.hpp"
@@ -74,14 +73,7 @@ TEST(LidarStream, ASensorThatStandsStillGivesSweepsByTime) {
 TEST(LidarStream, AWaveringAzimuthAtTheCutMakesNoShreds) {
   TurningSensor sensor;
   sensor.turns_per_second = 0;
-  std::mt19937 random(4);
-  for (int i = 0; i < 2000; ++i) {
-    PacketBuilder packet = sensor.packet();
-    for (std::size_t block = 0; block < kBlocks; ++block) {
-      packet.azimuth(block, random() % 2 == 0 ? 35999 : 1);
-    }
-    sensor.send(packet);
-  }
+  sensor.send_wavering_at_zero(2000);
   EXPECT_LE(sensor.seen.size(), 140U);
 }
 

@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <random>
 #include <vector>
 
 #include "turning_sensor.hpp"
@@ -73,14 +72,7 @@ TEST(TurnParts, OfTheTurnThatWasUnderWayNoPartIsWhole) {
 
 TEST(TurnParts, AWaveringAzimuthAtTheCutEndsNoPart) {
   TurningSensor sensor({}, 8);
-  std::mt19937 random(4);
-  for (int i = 0; i < 400; ++i) {
-    PacketBuilder packet = sensor.packet();
-    for (std::size_t block = 0; block < kBlocks; ++block) {
-      packet.azimuth(block, random() % 2 == 0 ? 35999 : 1);
-    }
-    sensor.send(packet);
-  }
+  sensor.send_wavering_at_zero(400);
   EXPECT_EQ(sensor.counters().parts, 0U);
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <random>
 #include <vector>
 
 #include "packet_builder.hpp"
@@ -62,6 +63,17 @@ public:
     for (const auto end = elapsed_ns_ + static_cast<std::int64_t>(seconds * 1e9);
          elapsed_ns_ < end;) {
       send();
+    }
+  }
+  /// Packets of a sensor that stands with its azimuth about zero, now before it and now behind.
+  void send_wavering_at_zero(int packets) {
+    std::mt19937 random(4);
+    for (int i = 0; i < packets; ++i) {
+      PacketBuilder wavering = packet();
+      for (std::size_t block = 0; block < kBlocks; ++block) {
+        wavering.azimuth(block, random() % 2 == 0 ? 35999 : 1);
+      }
+      send(wavering);
     }
   }
   LidarStream& stream() { return *stream_; }
