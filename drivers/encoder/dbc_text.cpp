@@ -151,10 +151,12 @@ bool DbcText::next(std::string_view& line) {
       swallowing_from_ = quoted_from_;
     }
     for (std::size_t i = 0; i < line.size(); ++i) {
-      if (line[i] == '\\')
+      if (line[i] == '\\') {
         ++i;  // \" is a quote inside
-      else if (line[i] == '"' && (is_quoted_ = !is_quoted_))
-        quoted_from_ = number_;
+      } else if (line[i] == '"') {
+        is_quoted_ = !is_quoted_;
+        if (is_quoted_) quoted_from_ = number_;
+      }
     }
     if (began_quoted) continue;
     more_ = cut_next_statement(line);

@@ -129,12 +129,11 @@ CanLineRefusal read_columns(std::string_view text, CanFrame& frame) {
     frame.size = static_cast<std::uint8_t>(size);
     return size <= kClassicSize && !frame.is_error ? CanLineRefusal::none : CanLineRefusal::data;
   }
-  for (frame.size = 0; frame.size < size; ++frame.size) {
+  for (std::size_t i = 0; i < size; ++i) {
     const std::string_view byte = word(text);
-    if (byte.size() != 2 || !read_number(byte, 16, frame.data[frame.size])) {
-      return CanLineRefusal::data;
-    }
+    if (byte.size() != 2 || !read_number(byte, 16, frame.data[i])) return CanLineRefusal::data;
   }
+  frame.size = static_cast<std::uint8_t>(size);
   return CanLineRefusal::none;
 }
 

@@ -147,7 +147,7 @@ std::optional<CanLink> look_at_can(const std::string& interface) {
   request.header.nlmsg_flags = NLM_F_REQUEST;
   request.interface.ifi_index = static_cast<int>(if_nametoindex(interface.c_str()));
   const Descriptor netlink(socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC, NETLINK_ROUTE));
-  if (request.interface.ifi_index == 0 ||
+  if (request.interface.ifi_index == 0 || !netlink.is_open() ||
       send(netlink.get(), &request, sizeof request, 0) != sizeof request) {
     return std::nullopt;
   }

@@ -33,7 +33,7 @@ std::string unknown_word(const CLI::App& app, const CLI::ParseError& error, int 
                          const char* const* argv) {
   if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return "";
   const std::string_view first = argc > 1 ? argv[1] : "";
-  if (!first.empty() && !first.starts_with("-") && app.get_subcommands().empty()) {
+  if (!first.empty() && !first.starts_with('-') && app.get_subcommands().empty()) {
     return unknown_command(app, first);
   }
   const bool is_extra = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError);

@@ -53,6 +53,9 @@ void ImuTerminal::plug_in() {
     // What has never been opened does not show that nobody has it open; and what the program has
     // not yet set up must not echo.
     const Descriptor slave(::open(terminal.data(), O_RDWR | O_NOCTTY | O_CLOEXEC));
+    if (!slave.is_open()) {
+      throw Failure(std::string("cannot open ") + terminal.data() + ": " + std::strerror(errno));
+    }
     termios settings{};
     tcgetattr(slave.get(), &settings);
     cfmakeraw(&settings);

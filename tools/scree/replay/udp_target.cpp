@@ -19,6 +19,8 @@ UdpTarget::UdpTarget(const std::string& address, int port)
   if (inet_pton(AF_INET, address.c_str(), &to.sin_addr) != 1) {
     throw CLI::ValidationError("--address", "must be an IPv4 address, as in 127.0.0.1:2368");
   }
+  if (!socket_.is_open())
+    throw Failure(std::string("cannot open a socket: ") + std::strerror(errno));
   const int on = 1;
   setsockopt(socket_.get(), SOL_SOCKET, SO_BROADCAST, &on, sizeof on);
   if (connect(socket_.get(), reinterpret_cast<const sockaddr*>(&to), sizeof to) != 0) {
