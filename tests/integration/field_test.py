@@ -137,7 +137,7 @@ class FieldTest(ProgramTest):
         make = self.field("clock_step/make.py")
         drive = os.path.join(DATA, "captures", "interop")
         last = {}
-        steps = ("0", "-5") if SANITIZED else ("0", "0.05", "2", "86400", "-0.3", "-5", "-86400")
+        steps = ("0", "-5") if SANITIZED else ("0", "2", "-0.3", "-86400")
         for step in steps:
             out = self.path("step" + step)
             self.done(sys.executable, make, drive, out, step)

@@ -72,12 +72,7 @@ class SetupTest(ProgramTest):
         self.assertGreater(len(result.stdout.splitlines()), 70)
 
     def test_nothing_is_said_of_right_robots(self):
-        drives = [
-            ("ditch", "70005", []),
-            ("rough", "70016", ["--turns"]),
-            ("street", "70034", ["--people", "4"]),
-            ("quarry", "70082", []),
-        ]
+        drives = [("rough", "70016", ["--turns"]), ("street", "70034", ["--people", "4"])]
         for scene, seed, more in drives:
             capture = self.simulated(scene, "--scene", scene, "--seed", seed, *more)
             self.assertEqual(self.said(capture), [], scene)

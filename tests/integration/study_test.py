@@ -92,7 +92,7 @@ class StudyTest(ProgramTest):
 
     def test_drives(self):
         said = self.scree("study", "drives", "--out", self.folder, "--seeds", "1",
-                          "--seconds", "2").stdout  # fmt: skip
+                          "--seconds", "1").stdout  # fmt: skip
         scenes = ["easy", "rolling", "rough", "crater", "ditch", "grass", "mixed", "cliff", "kerb",
                   "wood", "meadow", "boulders", "street", "quarry"]  # fmt: skip
         with open(self.path("drives.txt")) as file:

@@ -132,12 +132,12 @@ TEST_F(PipelineMapOfEdges, AnObstacleOfSweepsByThemselvesKeepsItsId) {
 // Registration keeps the map as the first attitude laid it; what is published is upright.
 /// A processor that is too slow leaves out sweeps.
 TEST_F(PipelineMap, SweepsThatAreLeftOutCostNoPlace) {
-  const Pose all = go(120).pose;
+  const Pose all = go(60).pose;
   for (const int every : {2, 4}) {
     SCOPED_TRACE(every);
     SlowPipelineMap some;
     some.go(1);  // odom begins with it
-    const Pose pose = some.go(119, true, every).pose;
+    const Pose pose = some.go(59, true, every).pose;
     EXPECT_LT((pose.translation - all.translation).norm(), 0.03);
     EXPECT_LT(pose.rotation.angularDistance(all.rotation), 0.005);
   }

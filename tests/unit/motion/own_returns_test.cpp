@@ -63,9 +63,12 @@ double post(const Eigen::Vector3d&, const Eigen::Vector3d& along) {
 }
 /// Waves of 0.3 m.
 double hills(const Eigen::Vector3d& origin, const Eigen::Vector3d& along) {
-  for (double range = 0.5; range < 30; range += 0.05) {
+  constexpr double kTop = 0.3;
+  // Down to their tops there is nothing.
+  if (along.z() >= 0) return 0;
+  for (double range = (kTop - origin.z()) / along.z(); range < 30; range += 0.05) {
     const Eigen::Vector3d at = origin + range * along;
-    if (at.z() < 0.3 * std::sin(at.x()) * std::sin(0.7 * at.y())) return range;
+    if (at.z() < kTop * std::sin(at.x()) * std::sin(0.7 * at.y())) return range;
   }
   return 0;
 }

@@ -50,7 +50,7 @@ TEST(TerrainEdge, ItsStripIsAnOutlineThatDoesNotCrossItself) {
   const auto way = winding_way();
   Random random(6);
   for (const TerrainEdgeKind kind : kAllKinds) {
-    for (int i = 0; i < 100; ++i) {
+    for (int i = 0; i < 25; ++i) {
       const TerrainEdge edge = TerrainEdge::draw(kind, way, 1, random.uniform(-3, 3), 60, random);
       if (edge.line().size() < 4) continue;
       EXPECT_EQ(uncrossed(edge.footprint()), edge.footprint()) << name_of(kind) << ' ' << i;
