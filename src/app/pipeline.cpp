@@ -191,9 +191,10 @@ void Pipeline::report_setup() {
 /// @param ends_turn else what moves is not looked for
 void Pipeline::detect_in_map(bool ends_turn) {
   const RollingMap& map = mapper_->map();
-  tracker_.remove_if([this](const Obstacle& obstacle) {
+  const std::size_t left = tracker_.remove_if([this](const Obstacle& obstacle) {
     return mapper_->remove_left(obstacle, moving_tracker_.was_left(obstacle));
   });
+  if (left > 0) mapper_->update_cloud();
   SeenCloud cloud = map.seen_cloud();
   cloud.robot = (mapper_->pose().translation - map.origin()).head<2>().cast<float>();
   map_detector_.detect(cloud, found_, timer_);

@@ -23,7 +23,8 @@ HoleEvidence::HoleEvidence(std::size_t max_cells)
       // The tiles of any raster with at least five rows and columns, which the border gives it.
       tops_(max_cells / 64 + 64),
       cells_(max_cells),
-      taken_by_(max_cells) {}
+      taken_by_(max_cells),
+      near_(max_cells) {}
 
 void HoleEvidence::build(const SeenCloud& cloud, const GroundSurface& surface) {
   const std::size_t cells = surface.columns() * surface.rows();
@@ -33,6 +34,7 @@ void HoleEvidence::build(const SeenCloud& cloud, const GroundSurface& surface) {
   lost_beams_.assign(cells, 0);
   lowest_beam_.assign(cells, std::numeric_limits<float>::infinity());
   taken_by_.assign(cells, 0);
+  near_.assign(cells, Near::unknown);
   number_ = 0;
   knows_beams_ = !cloud.origins.empty();
   if (!knows_beams_) return;
@@ -194,33 +196,39 @@ void HoleEvidence::collect_cells(std::span<const std::uint32_t> members,
 }
 
 /// The share of the cells at the rim with ground near them.
-float HoleEvidence::rim_share(const GroundSurface& surface) const {
-  constexpr float kNear = 0.35F;  // metres
-  // Where no beams tell, leaves that happen to lie level must not pass for ground.
-  const float least_patch = knows_beams_ ? 0.0F : 1.0F;  // square metres
-  const std::size_t columns = surface.columns(), rows = surface.rows();
-  const auto reach = static_cast<std::size_t>(std::lround(kNear / surface.cell_size()));
-  const auto has_ground_near = [&](std::size_t cell) {
-    const std::size_t column = cell % columns, row = cell / columns;
-    for (std::size_t v = row - std::min(row, reach); v <= std::min(row + reach, rows - 1); ++v) {
-      for (std::size_t u = column - std::min(column, reach);
-           u <= std::min(column + reach, columns - 1); ++u) {
-        const std::size_t near = v * columns + u;
-        if (surface.is_ground(near) && surface.patch_area(near) >= least_patch) return true;
-      }
-    }
-    return false;
-  };
+float HoleEvidence::rim_share(const GroundSurface& surface) {
   float rim = 0, ground = 0;
   for (const std::uint32_t cell : cells_) {
-    const auto around = neighbours(cell, columns);
+    const auto around = neighbours(cell, surface.columns());
     const bool is_inner =
         std::ranges::all_of(around, [&](std::size_t near) { return taken_by_[near] == number_; });
     if (is_inner) continue;
     ++rim;
-    if (has_ground_near(cell)) ++ground;
+    if (has_ground_near(cell, surface)) ++ground;
   }
   return ground / std::max(rim, 1.0F);
+}
+
+/// Many clusters share a void, so that a cell is asked for again and again.
+bool HoleEvidence::has_ground_near(std::size_t cell, const GroundSurface& surface) {
+  constexpr float kNear = 0.35F;  // metres
+  if (near_[cell] != Near::unknown) return near_[cell] == Near::ground;
+  // Where no beams tell, leaves that happen to lie level must not pass for ground.
+  const float least_patch = knows_beams_ ? 0.0F : 1.0F;  // square metres
+  const std::size_t columns = surface.columns(), rows = surface.rows();
+  const auto reach = static_cast<std::size_t>(std::lround(kNear / surface.cell_size()));
+  const std::size_t column = cell % columns, row = cell / columns;
+  near_[cell] = Near::nothing;
+  for (std::size_t v = row - std::min(row, reach); v <= std::min(row + reach, rows - 1); ++v) {
+    for (std::size_t u = column - std::min(column, reach);
+         u <= std::min(column + reach, columns - 1); ++u) {
+      const std::size_t near = v * columns + u;
+      if (!surface.is_ground(near) || surface.patch_area(near) < least_patch) continue;
+      near_[cell] = Near::ground;
+      return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace scree

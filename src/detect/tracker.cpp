@@ -50,10 +50,12 @@ void Tracker::update(std::int64_t stamp_ns, const Eigen::Vector3d& robot,
   list_near(robot, obstacles);
 }
 
-void Tracker::remove_if(const std::function<bool(const Obstacle&)>& has_left) {
+std::size_t Tracker::remove_if(const std::function<bool(const Obstacle&)>& has_left) {
+  const std::size_t before = tracks_.size();
   const auto last = std::remove_if(tracks_.begin(), tracks_.end(),
                                    [&](const Track& track) { return has_left(track.obstacle); });
   tracks_.resize(static_cast<std::size_t>(last - tracks_.begin()));
+  return before - tracks_.size();
 }
 
 void Tracker::rename(std::int64_t id, std::int64_t new_id) {

@@ -58,7 +58,7 @@ void RollingMap::add(const DeskewedSweep& sweep, const Pose& pose, std::int64_t 
   add_passing_beams(sweep, rotation, translation);
   robot_ = translation;
   prune();
-  extract_cloud();
+  update_cloud();
 }
 
 /// Keeps floats small. The origin moves by a whole number of voxels, so that the raster of later
@@ -78,7 +78,7 @@ void RollingMap::recenter(const Pose& pose) {
   const auto voxels = [&](double metres) {
     return static_cast<int>(std::lround(metres / settings_.voxel));
   };
-  voxels_.shift(-voxels(shift.x()), -voxels(shift.y()), -voxels(shift.z()));
+  voxels_.shift(-voxels(shift.x()), -voxels(shift.y()), -voxels(shift.z()), sweep_);
 }
 
 /// Counts of beams halve in 40 s: they must not tell how long the robot has been near a thing.
@@ -129,6 +129,8 @@ void RollingMap::add_points(const DeskewedSweep& sweep, const Eigen::Matrix3f& r
 
 void RollingMap::add_hit(MapVoxel& voxel, const Eigen::Vector3f& point, const DeskewedSweep& sweep,
                          std::size_t index) {
+  const bool was_isolated = voxel.is_isolated();
+  const bool is_first = voxel.last_sweep != sweep_;
   if (voxel.hits < kMaxHits) {
     ++voxel.hits;
     voxel.isolated_hits += sweep.is_isolated[index];
@@ -136,12 +138,13 @@ void RollingMap::add_hit(MapVoxel& voxel, const Eigen::Vector3f& point, const De
   const float share = 1 / static_cast<float>(voxel.hits);
   voxel.mean += share * (point - voxel.mean);
   voxel.reflectivity += share * (sweep.points.reflectivity[index] - voxel.reflectivity);
-  if (voxel.last_sweep != sweep_ && voxel.sweeps < kMaxHits) ++voxel.sweeps;
+  if (is_first && voxel.sweeps < kMaxHits) ++voxel.sweeps;
   voxel.last_sweep = sweep_;
   voxel.seen_ds = tenths(end_ns_);
   voxel.misses = 0;
   ++voxel.beams.ended;
   voxel.beams.scatter += sweep.scatter[index];
+  if (is_first || voxel.is_isolated() != was_isolated) voxels_.grow(voxel.key, sweep_);
 }
 
 Occupancy RollingMap::occupancy_at(const Eigen::Vector3d& point) const {
@@ -227,9 +230,8 @@ bool RollingMap::remove_left(const Obstacle& obstacle, bool was_left) {
   if (!places.are_empty()) return false;
   const UprightBox box(obstacle, origin_);
   for (std::size_t i = voxels_.size(); i-- > 0;) {
-    if (box.holds(voxels_[i].mean, kFloor)) voxels_.erase(i);
+    if (box.holds(voxels_[i].mean, kFloor)) voxels_.erase(i, sweep_);
   }
-  extract_cloud();
   return true;
 }
 
@@ -258,18 +260,22 @@ void RollingMap::prune() {
     // From the future, too, when the clock was set back.
     const bool is_old = std::abs(static_cast<std::int32_t>(now_ds - voxel.seen_ds)) > kept_ds;
     const bool is_noise = sweep_ - voxel.last_sweep == kConfirmWithin && !confirm(voxel);
-    if (is_far || has_moved || is_old || is_noise) voxels_.erase(i);
+    if (is_far || has_moved || is_old || is_noise) voxels_.erase(i, sweep_);
   }
 }
 
-void RollingMap::extract_cloud() {
+void RollingMap::update_cloud() {
   const auto reach = static_cast<float>(settings_.search_reach);
+  ++looks_;
   cloud_.clear();
   beams_.clear();
   origins_.clear();
   for (MapVoxel& voxel : voxels_) {
-    const bool is_far = (voxel.mean - robot_).squaredNorm() > reach * reach;
-    if (is_far || is_dust(voxel) || !confirm(voxel)) continue;
+    if ((voxel.mean - robot_).squaredNorm() > reach * reach) {
+      voxel.was_looked_at = false;
+      continue;
+    }
+    if (!confirm(voxel) || is_dust(voxel)) continue;
     cloud_.push_back(voxel.mean.x(), voxel.mean.y(), voxel.mean.z(), voxel.reflectivity);
     beams_.push_back(voxel.beams);
     origins_.push_back(voxel.seen_from);

@@ -29,12 +29,16 @@ constexpr std::array<Offset, 26> kAround = [] {
 
 }  // namespace
 
-/// The neighbourhood is looked at every few sweeps only: what was found there stays, mostly.
+/// What is not confirmed stays so until a voxel around it grows. What is stays so until one of them
+/// is erased, and is looked at every few sweeps only.
 bool RollingMap::confirm(MapVoxel& voxel) const {
   constexpr std::uint32_t kLookEvery = 5;  // sweeps
-  if (!voxel.is_confirmed || (sweep_ - voxel.last_sweep) % kLookEvery == 0) {
-    voxel.is_confirmed = has_confirmation(voxel);
-  }
+  const VoxelHashMap::Changes& changes = voxels_.changes(voxel.key);
+  const bool is_due = voxel.is_confirmed ? (sweep_ - voxel.last_sweep) % kLookEvery == 0 &&
+                                               sweep_ - changes.erased <= kLookEvery
+                                         : sweep_ - changes.grown <= 1;
+  if (is_due || !voxel.was_looked_at) voxel.is_confirmed = has_confirmation(voxel);
+  voxel.was_looked_at = true;
   return voxel.is_confirmed;
 }
 
@@ -61,20 +65,10 @@ bool RollingMap::has_confirmation(const MapVoxel& voxel) const {
 
 /// Few of the beams that come to dust end there, now here, now there, and it touches nothing solid,
 /// as a blade's tip does. A voxel with many hits is no dust, whatever went past it.
-bool RollingMap::is_dust(const MapVoxel& voxel) const {
+bool RollingMap::is_dust(const MapVoxel& voxel) {
   constexpr std::uint16_t kSolidHits = 8;
-  // The densest puffs of simulated drives stop 5 to 8 % of the beams.
-  constexpr float kSolidRatio = 0.1F;
-  if (voxel.hits >= kSolidHits) return false;
-  const Eigen::Vector3f point = voxel.mean + origin_.cast<float>();
-  if (free_space_.hit_ratio(point) >= kSolidRatio) return false;
-  for (const float side : {-FreeSpace::kCell, FreeSpace::kCell}) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const float ratio = free_space_.hit_ratio(point + side * Eigen::Vector3f::Unit(axis));
-      if (ratio >= kSolidRatio && ratio < 1) return false;  // 1: a grain may be all that came
-    }
-  }
-  return true;
+  return voxel.hits < kSolidHits &&
+         free_space_.is_nearly_empty(voxel.mean + origin_.cast<float>(), looks_);
 }
 
 }  // namespace scree

@@ -10,7 +10,8 @@ VoxelHashMap::VoxelHashMap(std::size_t capacity)
       mask_(numbers_.capacity() - 1),
       masks_(BlockGrid::kSlots),
       in_block_(BlockGrid::kSlots),
-      in_region_(RegionGrid::kSlots) {
+      in_region_(RegionGrid::kSlots),
+      changes_(BlockGrid::kSlots) {
   clear();
 }
 
@@ -24,6 +25,7 @@ void VoxelHashMap::clear_index() {
   masks_.assign(masks_.capacity(), 0);
   in_block_.assign(in_block_.capacity(), 0);
   in_region_.assign(in_region_.capacity(), 0);
+  changes_.assign(changes_.capacity(), {});
 }
 
 void VoxelHashMap::index(std::size_t voxel, std::size_t slot) {
@@ -50,7 +52,20 @@ MapVoxel* VoxelHashMap::find_or_add(const VoxelKey& key) {
   return &voxels_.back();
 }
 
-void VoxelHashMap::erase(std::size_t voxel) {
+/// In all blocks that hold the voxel or one beside it.
+void VoxelHashMap::note(const VoxelKey& key, std::uint32_t sweep, std::uint32_t Changes::*change) {
+  const int last_x = (key.x + 1) >> 2, last_y = (key.y + 1) >> 2, last_z = (key.z + 1) >> 2;
+  for (int z = (key.z - 1) >> 2; z <= last_z; ++z) {
+    for (int y = (key.y - 1) >> 2; y <= last_y; ++y) {
+      for (int x = (key.x - 1) >> 2; x <= last_x; ++x) {
+        changes_[BlockGrid::CellIndex{x, y, z}.slot()].*change = sweep;
+      }
+    }
+  }
+}
+
+void VoxelHashMap::erase(std::size_t voxel, std::uint32_t sweep) {
+  note(voxels_[voxel].key, sweep, &Changes::erased);
   const std::size_t block = block_of(voxels_[voxel].key);
   // A voxel of a block far off may stand behind the same bit, so it stays until all have gone.
   if (--in_block_[block] == 0) masks_[block] = 0;
@@ -72,8 +87,9 @@ void VoxelHashMap::erase(std::size_t voxel) {
   voxels_.resize(voxels_.size() - 1);
 }
 
-void VoxelHashMap::shift(int dx, int dy, int dz) {
+void VoxelHashMap::shift(int dx, int dy, int dz, std::uint32_t sweep) {
   clear_index();
+  changes_.assign(changes_.capacity(), {sweep, sweep});
   for (std::size_t i = 0; i < voxels_.size(); ++i) {
     VoxelKey& key = voxels_[i].key;
     key = key.shifted(dx, dy, dz);

@@ -46,7 +46,8 @@ private:
                  const GroundSurface& surface);
   void collect_cells(std::span<const std::uint32_t> members, const CandidatePoints& points,
                      const GroundSurface& surface);
-  float rim_share(const GroundSurface& surface) const;
+  float rim_share(const GroundSurface& surface);
+  bool has_ground_near(std::size_t cell, const GroundSurface& surface);
 
   bool knows_beams_ = false;
   FixedVector<float> into_, through_ground_;  // beams that ended below the ground, by cell
@@ -56,6 +57,8 @@ private:
   std::size_t tile_columns_ = 0;
   FixedVector<std::uint32_t> cells_, taken_by_;  // of the cluster, and the void beside it
   std::size_t seen_cells_ = 0;                   // the first of them: those with members
+  enum class Near : std::uint8_t { unknown, ground, nothing };
+  FixedVector<Near> near_;  // by cell: what has_ground_near() found
   std::uint32_t number_ = 0;
 };
 

@@ -65,7 +65,8 @@ public:
   void set(const TrackingSettings& settings) { settings_ = settings; }
   void clear() { tracks_.clear(); }
   /// Forgets the tracks whose obstacles have left.
-  void remove_if(const std::function<bool(const Obstacle&)>& has_left);
+  /// @return how many
+  std::size_t remove_if(const std::function<bool(const Obstacle&)>& has_left);
   /// Gives an obstacle that is followed another id.
   void rename(std::int64_t id, std::int64_t new_id);
   /// No obstacle has got this id or a larger one yet.

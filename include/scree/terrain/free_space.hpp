@@ -34,6 +34,10 @@ public:
   std::uint32_t last_miss(const Eigen::Vector3f& point) const;
   /// The share of hits among the last thousands of beams; 1 where no beam came.
   float hit_ratio(const Eigen::Vector3f& point) const;
+  /// Whether nearly all of the last thousands of beams went through the cell of a point, and
+  /// nothing beside it stops more.
+  /// @param look number of the walk over the map: each cell is looked at once in it
+  bool is_nearly_empty(const Eigen::Vector3f& point, std::uint32_t look);
   bool is_clear(const Eigen::Vector3f& point) const;
   enum class Presence : std::uint8_t { unknown, there, gone };
   /// Whether what was seen in the cell of a point still is: hit in one of the last three sweeps
@@ -53,12 +57,15 @@ private:
     std::uint8_t passes = 0;  ///< sweeps that went through it since it was hit, saturating
     std::uint8_t stays = 0;   ///< sweeps with hits and none without between, saturating
     bool is_clear = false;
+    bool is_nearly_empty = false;  ///< at the last look
+    std::uint32_t look = 0;
   };
 
   Cell& cell_for(const Eigen::Vector3f& point);
   /// Null where no beam came.
   const Cell* find(const Eigen::Vector3f& point) const;
   const Cell* find(const Grid::CellIndex& index) const;
+  bool stops_little(const Eigen::Vector3f& point) const;
   bool has_empty_neighbours(const Grid::CellIndex& index) const;
   void disturb_neighbours(const Grid::CellIndex& index);
 

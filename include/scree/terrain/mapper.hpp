@@ -58,6 +58,7 @@ public:
   bool remove_left(const Obstacle& obstacle, bool was_left) {
     return map_.remove_left(obstacle, was_left);
   }
+  void update_cloud() { map_.update_cloud(); }
   const MotionStep& step() const { return step_; }
   const Registration::Outcome& registration() const { return outcome_; }
   /// Whether the map began anew with the last sweep, because its frame was found wrong or

@@ -51,12 +51,14 @@ public:
   bool is_seen_through(const Eigen::Vector3d& point) const;
 
   /// Removes what was seen in an obstacle's box when it has left: beams go through nearly
-  /// everywhere in it. To be called after a sweep was added; the cloud is without it from then on.
+  /// everywhere in it. To be called after a sweep was added; the cloud has it until update_cloud().
   /// @param obstacle in the map's frame; a low one is never said to have left
   /// @param was_left whether something that moves came from there: then what is left of it is
   /// looked at voxel by voxel
   /// @return whether it has left
   bool remove_left(const Obstacle& obstacle, bool was_left = false);
+  /// Takes the cloud out of the map anew, after something was removed.
+  void update_cloud();
   /// In the map's frame.
   const FreeSpace& free_space() const { return free_space_; }
 
@@ -101,8 +103,7 @@ private:
   Places voxels_in(const Obstacle& obstacle) const;
   bool confirm(MapVoxel& voxel) const;
   bool has_confirmation(const MapVoxel& voxel) const;
-  bool is_dust(const MapVoxel& voxel) const;
-  void extract_cloud();
+  bool is_dust(const MapVoxel& voxel);
 
   MapSettings settings_;
   float inverse_;  // voxels a metre
@@ -117,6 +118,7 @@ private:
   FixedVector<BeamCount> beams_;
   FixedVector<Eigen::Vector3f> origins_;  // of the beam that hit each last
   std::uint32_t sweep_ = 0;               // number of the last sweep, from 1 on
+  std::uint32_t looks_ = 0;               // at all voxels, for the cloud
   std::int64_t end_ns_ = 0, decayed_ns_ = 0;
   std::uint64_t dropped_ = 0;
 };

@@ -38,6 +38,7 @@ struct alignas(64) MapVoxel {
   std::uint8_t sweeps = 0;         ///< that hit it, saturating
   std::uint8_t misses = 0;         ///< beams that went through it since the last hit, saturating
   bool is_confirmed = false;       ///< what the last look at its neighbourhood found
+  bool was_looked_at = false;      ///< its neighbourhood, for the cloud of the sweep before
   BeamCount beams;
   std::uint32_t last_sweep = 0;                         ///< number of the last sweep that hit it
   std::uint32_t seen_ds = 0;                            ///< end of that sweep, tenths of seconds
@@ -48,6 +49,7 @@ struct alignas(64) MapVoxel {
 
   bool is_isolated() const { return isolated_hits == hits; }
 };
+static_assert(sizeof(MapVoxel) == 64);
 
 /// Voxels by their keys: a hash map of bounded memory with open addressing and linear probing. The
 /// voxels stand one behind the other, so that all of them are visited quickly; erase() changes
@@ -83,9 +85,16 @@ public:
     if (number != 0) __builtin_prefetch(&voxels_[number - 1]);
   }
   /// Removes a voxel; the last one takes its index.
-  void erase(std::size_t index);
-  /// Moves all keys.
-  void shift(int dx, int dy, int dz);
+  void erase(std::size_t index, std::uint32_t sweep);
+  /// Notes that a voxel has become more in a sweep: what it tells of those around it.
+  void grow(const VoxelKey& key, std::uint32_t sweep) { note(key, sweep, &Changes::grown); }
+  /// The last sweeps in which a voxel, or one beside it, may have grown or been erased.
+  struct Changes {
+    std::uint32_t grown = 0, erased = 0;
+  };
+  const Changes& changes(const VoxelKey& key) const { return changes_[block_of(key)]; }
+  /// Moves all keys. All may have changed in this sweep.
+  void shift(int dx, int dy, int dz, std::uint32_t sweep);
 
   /// The edge of the largest cube around a key, among those of 16, 4 and 1 voxels, that surely
   /// holds none; 0 where there may be one. Most of a beam's way is empty, and is passed quickly by
@@ -121,6 +130,7 @@ private:
   }
   void index(std::size_t voxel, std::size_t slot);
   void count(const VoxelKey& key);
+  void note(const VoxelKey& key, std::uint32_t sweep, std::uint32_t Changes::*change);
   void clear_index();
 
   FixedVector<MapVoxel> voxels_;
@@ -129,6 +139,7 @@ private:
   FixedVector<std::uint64_t> masks_;      // of each block the voxels that there may be
   FixedVector<std::uint16_t> in_block_;   // voxels, by block of 4 x 4 x 4
   FixedVector<std::uint16_t> in_region_;  // voxels, by region of 16 x 16 x 16
+  FixedVector<Changes> changes_;          // by block
 };
 
 /// Sixteen voxels side by side have sixteen slots side by side: a line of a processor's cache.

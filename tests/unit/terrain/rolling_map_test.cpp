@@ -267,6 +267,8 @@ TEST_F(RollingMapTest, WhatIsLeftOfSomeoneWhoWentGoesVoxelByVoxel) {
   EXPECT_TRUE(has_near({4.01, 0, 0.9}, 0.1));
   EXPECT_FALSE(map_.remove_left(standing));
   EXPECT_TRUE(map_.remove_left(standing, true));
+  EXPECT_TRUE(has_near({4.01, 0, 0.9}, 0.1));
+  map_.update_cloud();
   EXPECT_FALSE(has_near({4.01, 0, 0.9}, 0.5));
 }
 

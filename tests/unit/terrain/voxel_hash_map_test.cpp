@@ -36,13 +36,36 @@ TEST(VoxelHashMap, VoxelsFarOffMayGoWithoutHidingOthers) {
   VoxelHashMap map(10);
   map.find_or_add({1, 1, 1});
   map.find_or_add({513, 1, 1});  // the same place in the masks
-  map.erase(0);
+  map.erase(0, 1);
   EXPECT_EQ(map.find({1, 1, 1}), nullptr);
   EXPECT_NE(map.find({513, 1, 1}), nullptr);
   EXPECT_EQ(map.empty_edge({513, 1, 1}), 0);
-  map.erase(0);
+  map.erase(0, 1);
   EXPECT_EQ(map.find({513, 1, 1}), nullptr);
   EXPECT_GT(map.empty_edge({513, 1, 1}), 0);
+}
+
+TEST(VoxelHashMap, WhatChangesIsNotedForAllAroundIt) {
+  std::mt19937 random(4);
+  std::uniform_int_distribution<int> number(-100, 100);
+  VoxelHashMap map(10);
+  for (std::uint32_t sweep = 1; sweep <= 200; ++sweep) {
+    const VoxelKey key = VoxelKey().shifted(number(random), number(random), number(random) / 4);
+    map.find_or_add(key);
+    map.grow(key, sweep);
+    const bool erases = sweep % 2 == 0;
+    if (erases) map.erase(0, sweep);
+    for (int i = 0; i < 27; ++i) {
+      const auto changes = map.changes(key.shifted(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
+      ASSERT_EQ(changes.grown, sweep);
+      ASSERT_EQ(changes.erased == sweep, erases);
+    }
+    ASSERT_NE(map.changes(key.shifted(8, 0, 0)).grown, sweep);
+    if (!erases) map.erase(0, 0);
+  }
+  map.shift(256, 0, 0, 201);
+  EXPECT_EQ(map.changes({5, 5, 5}).grown, 201U);
+  EXPECT_EQ(map.changes({5, 5, 5}).erased, 201U);
 }
 
 TEST(VoxelHashMap, HoldsWhatAPlainMapHolds) {
@@ -57,7 +80,7 @@ TEST(VoxelHashMap, HoldsWhatAPlainMapHolds) {
       const std::size_t index = random() % map.size();
       const VoxelKey& erased = map[index].key;
       reference.erase({erased.x, erased.y, erased.z});
-      map.erase(index);
+      map.erase(index, 1);
     } else if (MapVoxel* const voxel = map.find_or_add(key); voxel != nullptr) {
       reference[{x, y, z}] = ++voxel->hits;
     } else {
@@ -67,7 +90,7 @@ TEST(VoxelHashMap, HoldsWhatAPlainMapHolds) {
   }
   expect_same(map, reference);
 
-  map.shift(100, -1000, 7);
+  map.shift(100, -1000, 7, 1);
   Reference shifted;
   for (const auto& [key, hits] : reference) {
     const auto [x, y, z] = key;
