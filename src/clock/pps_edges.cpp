@@ -22,12 +22,13 @@ bool PpsEdges::add(const ClockSample& edge, std::int64_t skew_ppb) {
 
 ClockLine PpsEdges::line(std::int64_t skew_ppb) const {
   const ClockSample& last = edges_[count_ - 1];
-  std::array<std::int64_t, kEdges> offsets;
+  std::array<std::int64_t, kEdges> offsets{};
   for (std::size_t i = 0; i < count_; ++i) {
     offsets[i] = edges_[i].offset_ns + gained_ns(last.device_ns - edges_[i].device_ns, skew_ppb);
   }
-  std::sort(offsets.begin(), offsets.begin() + static_cast<std::ptrdiff_t>(count_));
-  return {last.device_ns, offsets[count_ / 2], skew_ppb};
+  const auto middle = offsets.begin() + static_cast<std::ptrdiff_t>(count_ / 2);
+  std::nth_element(offsets.begin(), middle, offsets.begin() + static_cast<std::ptrdiff_t>(count_));
+  return {last.device_ns, *middle, skew_ppb};
 }
 
 void PpsEdges::update_lock(std::int64_t skew_ppb) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nanoflann.hpp>
 #include <numeric>
+#include <vector>
 
 #include "scree/detect/label.hpp"
 
@@ -35,35 +36,55 @@ class KdTreeClusters::Tree
   };
 
 public:
-  // By these names the base class asks for them.
+  // By these names the base class asks for them. Those of its own members changed with them.
+#if NANOFLANN_VERSION < 0x150
   TreePoints dataset;
   Nodes pool;
-
-  explicit Tree(std::size_t max_points) : dataset{}, pool{FixedVector<Node>(2 * max_points)} {
+  explicit Tree(std::size_t max_points)
+      : dataset{},
+        pool{FixedVector<Node>(2 * max_points)},
+        points_(dataset.points),
+        order_(vAcc),
+        bounds_(root_bbox),
+        root_(root_node) {
     m_leaf_max_size = kLeafPoints;
     dim = 3;
-    vAcc.reserve(max_points);
+    order_.reserve(max_points);
   }
+#else
+  TreePoints dataset_;
+  Nodes pool_;
+  explicit Tree(std::size_t max_points)
+      : dataset_{},
+        pool_{FixedVector<Node>(2 * max_points)},
+        points_(dataset_.points),
+        order_(vAcc_),
+        bounds_(root_bbox_),
+        root_(root_node_) {
+    leaf_max_size_ = kLeafPoints;
+    dim_ = 3;
+    order_.reserve(max_points);
+  }
+#endif
 
   void build(PointView points) {
-    dataset.points = points;
-    m_size = points.size();
+    points_ = points;
     freeIndex(*this);
-    vAcc.resize(m_size);
-    std::iota(vAcc.begin(), vAcc.end(), 0U);
-    if (m_size == 0) return;
+    order_.resize(points.size());
+    std::iota(order_.begin(), order_.end(), 0U);
+    if (points.size() == 0) return;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto values = axis == 0 ? points.x : axis == 1 ? points.y : points.z;
       const auto [low, high] = std::ranges::minmax(values);
-      root_bbox[axis] = {low, high};
+      bounds_[axis] = {low, high};
     }
-    root_node = divideTree(*this, 0, m_size, root_bbox);
+    root_ = divideTree(*this, 0, points.size(), bounds_);
   }
 
   /// Calls visit(index) for the points whose squared distance from point i is no more than this.
   template <class Visit>
   void for_each_within(std::uint32_t i, float square, Visit&& visit) const {
-    if (root_node != nullptr) descend(*root_node, i, square, visit);
+    if (root_ != nullptr) descend(*root_, i, square, visit);
   }
 
 private:
@@ -73,12 +94,12 @@ private:
   void descend(const Node& node, std::uint32_t i, float square, Visit& visit) const {
     if (node.child1 == nullptr) {
       for (auto at = node.node_type.lr.left; at < node.node_type.lr.right; ++at) {
-        if (square_distance(i, vAcc[at]) <= square) visit(vAcc[at]);
+        if (square_distance(i, order_[at]) <= square) visit(order_[at]);
       }
       return;
     }
     const auto& cut = node.node_type.sub;
-    const float place = dataset.kdtree_get_pt(i, static_cast<std::size_t>(cut.divfeat));
+    const float place = TreePoints{points_}.kdtree_get_pt(i, static_cast<std::size_t>(cut.divfeat));
     // Rounding never makes a distance along one axis larger than the distance, so nothing is lost.
     const float to_low = place - cut.divlow, to_high = cut.divhigh - place;
     if (to_low <= 0 || to_low * to_low <= square) descend(*node.child1, i, square, visit);
@@ -86,11 +107,15 @@ private:
   }
 
   float square_distance(std::uint32_t i, std::uint32_t j) const {
-    const PointView& points = dataset.points;
-    const float dx = points.x[i] - points.x[j], dy = points.y[i] - points.y[j],
-                dz = points.z[i] - points.z[j];
+    const float dx = points_.x[i] - points_.x[j], dy = points_.y[i] - points_.y[j],
+                dz = points_.z[i] - points_.z[j];
     return dx * dx + dy * dy + dz * dz;
   }
+
+  PointView& points_;
+  std::vector<std::uint32_t>& order_;
+  BoundingBox& bounds_;
+  NodePtr& root_;
 };
 
 KdTreeClusters::KdTreeClusters(std::size_t max_points)

@@ -187,7 +187,8 @@ Result<Network> Network::parse(std::string_view text, const std::string& origin)
     reader.refuse(fmt::format("format version {} is not {}", version, kVersion));
   const int inputs = reader.whole_number("inputs");
   if (inputs < 1 || inputs > static_cast<int>(kFeatures)) {
-    reader.refuse(fmt::format("has {} inputs, there are {} features", inputs, kFeatures));
+    reader.refuse(
+        fmt::format("has {} inputs, there are {} features", inputs, std::size_t{kFeatures}));
   }
   const int hidden = reader.whole_number("hidden");
   if (hidden < 1 || hidden > static_cast<int>(kMaxHidden)) {

@@ -62,8 +62,8 @@ public:
       return since_start(t_ns) > fault.begin && since_start(t_ns) < fault.end;
     };
     Errors errors;
-    Eigen::Quaterniond to_world;
-    Eigen::Vector3d begin, before;
+    Eigen::Quaterniond to_world = Eigen::Quaterniond::Identity();
+    Eigen::Vector3d begin = Eigen::Vector3d::Zero(), before = begin;
     for (std::size_t i = 0; i < turns_.size(); ++i) {
       const Turn& turn = turns_[i];
       for (const ImuSample& sample : turn.imu) {
