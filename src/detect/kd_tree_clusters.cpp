@@ -36,7 +36,7 @@ class KdTreeClusters::Tree
   };
 
 public:
-  // By these names the base class asks for them. Those of its own members changed with them.
+  // By these names the base class asks for them. nanoflann 1.5 changed them, and those of its own.
 #if NANOFLANN_VERSION < 0x150
   TreePoints dataset;
   Nodes pool;
