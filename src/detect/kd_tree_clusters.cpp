@@ -38,34 +38,21 @@ class KdTreeClusters::Tree
 public:
   // By these names the base class asks for them. nanoflann 1.5 changed them, and those of its own.
 #if NANOFLANN_VERSION < 0x150
-  TreePoints dataset;
+  TreePoints dataset{};
   Nodes pool;
-  explicit Tree(std::size_t max_points)
-      : dataset{},
-        pool{FixedVector<Node>(2 * max_points)},
-        points_(dataset.points),
-        order_(vAcc),
-        bounds_(root_bbox),
-        root_(root_node) {
-    m_leaf_max_size = kLeafPoints;
-    dim = 3;
-    order_.reserve(max_points);
-  }
+#define SCREE_TREE_NAME(before, since) before
 #else
-  TreePoints dataset_;
+  TreePoints dataset_{};
   Nodes pool_;
+#define SCREE_TREE_NAME(before, since) since
+#endif
+
   explicit Tree(std::size_t max_points)
-      : dataset_{},
-        pool_{FixedVector<Node>(2 * max_points)},
-        points_(dataset_.points),
-        order_(vAcc_),
-        bounds_(root_bbox_),
-        root_(root_node_) {
-    leaf_max_size_ = kLeafPoints;
-    dim_ = 3;
+      : SCREE_TREE_NAME(pool, pool_){FixedVector<Node>(2 * max_points)} {
+    SCREE_TREE_NAME(m_leaf_max_size, leaf_max_size_) = kLeafPoints;
+    SCREE_TREE_NAME(dim, dim_) = 3;
     order_.reserve(max_points);
   }
-#endif
 
   void build(PointView points) {
     points_ = points;
@@ -112,10 +99,11 @@ private:
     return dx * dx + dy * dy + dz * dz;
   }
 
-  PointView& points_;
-  std::vector<std::uint32_t>& order_;
-  BoundingBox& bounds_;
-  NodePtr& root_;
+  PointView& points_ = SCREE_TREE_NAME(dataset, dataset_).points;
+  std::vector<std::uint32_t>& order_ = SCREE_TREE_NAME(vAcc, vAcc_);
+  BoundingBox& bounds_ = SCREE_TREE_NAME(root_bbox, root_bbox_);
+  NodePtr& root_ = SCREE_TREE_NAME(root_node, root_node_);
+#undef SCREE_TREE_NAME
 };
 
 KdTreeClusters::KdTreeClusters(std::size_t max_points)
