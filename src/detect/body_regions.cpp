@@ -73,6 +73,9 @@ void BodyRegions::label(const CandidatePoints& bodies, const GroundSurface& surf
   sizes_.clear();
   const auto steps = static_cast<int>(std::lround(settings.tolerance / 2 / surface.cell_size()));
   for (const Side side : {Side::above, Side::below}) {
+    const bool has_any = std::ranges::any_of(
+        bodies.height, [side](float height) { return (height > 0) == (side == Side::above); });
+    if (!has_any) continue;
     mark(bodies, side, surface, solidity);
     for (int step = 0; step < steps; ++step) {
       // To the sides and to the corners by turns: nearly a circle. Tops fall off in even steps.

@@ -5,17 +5,41 @@
 
 namespace scree {
 
-void GradientRaster::build(PointView points, std::span<const std::uint8_t> left_out,
+void GradientRaster::build(PointView points, std::span<const Role> roles,
                            const ElevationGradient& gradient) {
   lay_out(points, gradient.spacing);
   radius_ = gradient.radius / gradient.spacing;
   weight_ = {radius_, gradient.bandwidth / gradient.spacing};
   min_neighbours_ = gradient.min_neighbours;
   places_.assign(index_of(0, rows_), {});
+  is_near_.assign(places_.size(), 0);
+  const auto u_of = [&](std::size_t i) { return (points.x[i] - low_x_) * inverse_; };
+  const auto v_of = [&](std::size_t i) { return (points.y[i] - low_y_) * inverse_; };
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (left_out[i] != 0) continue;
-    add((points.x[i] - low_x_) * inverse_, (points.y[i] - low_y_) * inverse_, points.z[i]);
+    if (roles[i] != Role::asks) continue;
+    mark_near(static_cast<std::int32_t>(u_of(i)), static_cast<std::int32_t>(v_of(i)));
   }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (roles[i] == Role::left_out) continue;
+    const float u = u_of(i), v = v_of(i);
+    const auto column = static_cast<std::int32_t>(u), row = static_cast<std::int32_t>(v);
+    if (is_near_[index_of(column, row)] != 0) add(u, v, points.z[i]);
+  }
+}
+
+/// Marks the squares whose points are within the kernel's radius of one of the nine places around a
+/// point of a square: of its corners, and of those beside them.
+void GradientRaster::mark_near(std::int32_t column, std::int32_t row) {
+  std::uint8_t& near = is_near_[index_of(column, row)];
+  if (near == kAsks) return;
+  const auto reach = 2 + static_cast<std::int32_t>(radius_);
+  const std::int32_t left = std::max(column - reach, 0);
+  const std::int32_t right = std::min(column + reach, columns_ - 1);
+  const std::int32_t top = std::min(row + reach, rows_ - 1);
+  for (std::int32_t v = std::max(row - reach, 0); v <= top; ++v) {
+    for (std::int32_t u = left; u <= right; ++u) is_near_[index_of(u, v)] |= kIsNear;
+  }
+  near = kAsks;
 }
 
 /// Two places lie beyond every point, so that every point's nearest place has its eight positions.

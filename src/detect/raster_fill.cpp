@@ -59,7 +59,7 @@ void push_row(const float* near, const float* far, float* __restrict between,
 }
 
 /// The mean of the known cells among four, two above two, and whether there are any.
-struct Mean {
+struct KnownMean {
   float height = 0, weight = 0;
   void add(float cell_weight, float cell_height) {
     weight += cell_weight;
@@ -104,7 +104,7 @@ void RasterFill::pull(const Level& fine, const Level& coarse) {
     const std::size_t second = has_second_row ? fine.at(0, 2 * row + 1) : first;
     for (std::size_t column = 0; column < coarse.columns; ++column) {
       const std::size_t left = 2 * column, right = left + 1;
-      Mean mean;
+      KnownMean mean;
       mean.add(weights_[first + left], heights_[first + left]);
       if (right < fine.columns) mean.add(weights_[first + right], heights_[first + right]);
       if (has_second_row) {

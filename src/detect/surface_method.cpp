@@ -19,9 +19,9 @@ constexpr float kMostly = 0.7F;  // share of a cluster's points
 GroundSurfaceSettings ground_surface_of(const SurfaceSettings& settings) {
   return {.cell_size = static_cast<float>(settings.ground_cell),
           .cell_points = static_cast<float>(settings.ground_points),
-          .max_slope = static_cast<float>(settings.ground_slope),
-          .tolerance = static_cast<float>(settings.ground_tolerance),
-          .trend_reach = static_cast<float>(settings.ground_trend)};
+          .finder = {.max_slope = static_cast<float>(settings.ground_slope),
+                     .tolerance = static_cast<float>(settings.ground_tolerance),
+                     .trend_reach = static_cast<float>(settings.ground_trend)}};
 }
 
 SurfaceMethod::SurfaceMethod(const SurfaceSettings& settings, double clearance,
@@ -32,11 +32,11 @@ SurfaceMethod::SurfaceMethod(const SurfaceSettings& settings, double clearance,
       max_candidates_(limits.candidates),
       kernel_(gradient_of(settings.kernel)),
       gradient_(limits.ground_cells),
-      surface_(limits.points, limits.ground_cells),
+      surface_(ground_surface_of(settings), limits.points, limits.ground_cells),
       beam_grid_(limits.ground_cells),
       height_(limits.points),
       is_off_ground_(limits.points),
-      is_hidden_(limits.points),
+      roles_(limits.points),
       candidates_(limits.candidates),
       kept_(limits.candidates),
       euclidean_(limits.candidates),
@@ -62,7 +62,7 @@ ClusteredPoints SurfaceMethod::find(const PointCloud& points, const SeenCloud& c
   mark_points_off_ground(points);
   thin_candidates(counts);
   timer.done(Stage::surface);
-  gradient_.build(points, is_hidden_, kernel_);
+  gradient_.build(points, {roles_.data(), roles_.size()}, kernel_);
   gather_candidates(points, counts);
   timer.done(Stage::gradient);
   remove_isolated_points(candidates_,
@@ -81,15 +81,14 @@ ClusteredPoints SurfaceMethod::find(const PointCloud& points, const SeenCloud& c
 }
 
 void SurfaceMethod::build_ground(const PointCloud& points, const SeenCloud& cloud) {
-  const GroundSurfaceSettings ground = ground_surface_of(settings_);
   const auto lowest = static_cast<float>(settings_.body_height);
   if (cloud.beams.empty()) {
-    surface_.build(points, ground);
+    surface_.build(points);
   } else {
     // What is loose, a rough surface tells.
-    surface_.build(points, ground, GroundSurface::Accuracy::rough);
+    surface_.build_roughly(points);
     beam_grid_.find_loose(cloud.points, cloud.beams, surface_, lowest, highest_);
-    surface_.build_below(beam_grid_.loose(), ground);
+    surface_.build_below(beam_grid_.loose());
   }
   beam_grid_.build(cloud.points, cloud.beams, surface_, lowest, highest_);
   evidence_.build(cloud, surface_);
@@ -100,7 +99,7 @@ void SurfaceMethod::mark_points_off_ground(const PointCloud& points) {
   const auto least = static_cast<float>(settings_.body_height);
   height_.resize(points.size());
   is_off_ground_.resize(points.size());
-  is_hidden_.resize(points.size());
+  roles_.resize(points.size());
   surface_.heights_above(points, height_);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const std::size_t cell = surface_.cell_of(i);
@@ -109,7 +108,10 @@ void SurfaceMethod::mark_points_off_ground(const PointCloud& points) {
     const bool is_ground = surface_.is_ground(cell) && !beam_grid_.is_loose(cell);
     is_off_ground_[i] = is_low || is_ground ? 0 : 1;
     // A rock that is narrower at the ground than above is no less steep for the ground seen below.
-    is_hidden_[i] = is_low && beam_grid_.stops_all(cell) ? 1 : 0;
+    const bool is_hidden = is_low && beam_grid_.stops_all(cell);
+    roles_[i] = is_off_ground_[i] != 0 ? GradientRaster::Role::asks
+                : is_hidden            ? GradientRaster::Role::left_out
+                                       : GradientRaster::Role::counts;
   }
 }
 

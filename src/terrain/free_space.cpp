@@ -55,6 +55,11 @@ void FreeSpace::add_misses(const Eigen::Vector3f& point, std::uint32_t sweep, st
   cell.is_clear = kEmptyRatio * cell.hits <= cell.misses && has_empty_neighbours(cell.index);
 }
 
+void FreeSpace::add_beams(const Eigen::Vector3f& from, const Eigen::Vector3f& along, float end,
+                          std::uint32_t sweep, std::uint16_t beams) {
+  for (float way = 0; way < end; way += kCell) add_misses(from + way * along, sweep, beams);
+}
+
 void FreeSpace::add_hit(const Eigen::Vector3f& point, std::uint32_t sweep) {
   constexpr std::uint8_t kStaysClear = 20, kSettled = 10;  // sweeps
   Cell& cell = cell_for(point);

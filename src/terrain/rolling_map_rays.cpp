@@ -45,22 +45,14 @@ void RollingMap::trace_ray(const Eigen::Vector3f& from, const Eigen::Vector3f& b
   const float range = beam.norm();
   const float end = std::min(range - std::max(kClear, kClearShare * range), reach);
   const Eigen::Vector3f along = beam / range;
-  for (float way = 0; way < std::min(end, search_reach); way += FreeSpace::kCell) {
-    free_space_.add_misses(from + way * along + origin, sweep_, kRayStride);
-  }
+  free_space_.add_beams(from + origin, along, std::min(end, search_reach), sweep_, kRayStride);
   const float grass_end = std::min(range - kGrassClear, reach);
   const auto steps = static_cast<int>(std::ceil(grass_end * inverse_));
-  const VoxelWalk walk(from * inverse_, along);
   const MapVoxel* last = nullptr;
-  for (int step = 0; step < steps; ++step) {
-    const Eigen::Vector3f at = walk.at(step);
-    const VoxelKey key = VoxelKey::at(at);
-    if (const int edge = voxels_.empty_edge(key); edge > 0) {
-      if (edge > 1) step += walk.steps_within(edge, key, at);
-      continue;
-    }
+  const VoxelWalk walk(from * inverse_, along);
+  walk.for_each_voxel(voxels_, steps, [&](int step, const VoxelKey& key) {
     MapVoxel* const voxel = voxels_.find(key);
-    if (voxel == nullptr || voxel == last) continue;
+    if (voxel == nullptr || voxel == last) return;
     last = voxel;
     const Eigen::Vector3f to_mean = voxel->mean - from;
     const Eigen::Vector3f aside = to_mean - to_mean.dot(along) * along;  // from the beam
@@ -70,7 +62,7 @@ void RollingMap::trace_ray(const Eigen::Vector3f& from, const Eigen::Vector3f& b
     if (distance < miss_radius && is_clear && voxel->last_sweep != sweep_) {
       voxel->misses = std::min<std::uint8_t>(voxel->misses + 1, kMostMisses);
     }
-  }
+  });
 }
 
 /// Remembers beams that would have met level ground within reach, and met something farther off or

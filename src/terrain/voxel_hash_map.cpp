@@ -9,8 +9,8 @@ VoxelHashMap::VoxelHashMap(std::size_t capacity)
       numbers_(std::bit_ceil(2 * capacity)),
       mask_(numbers_.capacity() - 1),
       masks_(BlockGrid::kSlots),
+      blocks_(BlockGrid::kSlots / 64),
       in_block_(BlockGrid::kSlots),
-      in_region_(RegionGrid::kSlots),
       changes_(BlockGrid::kSlots) {
   clear();
 }
@@ -23,8 +23,8 @@ void VoxelHashMap::clear() {
 void VoxelHashMap::clear_index() {
   numbers_.assign(numbers_.capacity(), 0);
   masks_.assign(masks_.capacity(), 0);
+  blocks_.assign(blocks_.capacity(), 0);
   in_block_.assign(in_block_.capacity(), 0);
-  in_region_.assign(in_region_.capacity(), 0);
   changes_.assign(changes_.capacity(), {});
 }
 
@@ -36,8 +36,8 @@ void VoxelHashMap::index(std::size_t voxel, std::size_t slot) {
 void VoxelHashMap::count(const VoxelKey& key) {
   const std::size_t block = block_of(key);
   masks_[block] |= std::uint64_t{1} << bit_of(key);
+  blocks_[block / 64] |= std::uint64_t{1} << block % 64;
   ++in_block_[block];
-  ++in_region_[region_of(key)];
 }
 
 MapVoxel* VoxelHashMap::find_or_add(const VoxelKey& key) {
@@ -68,8 +68,10 @@ void VoxelHashMap::erase(std::size_t voxel, std::uint32_t sweep) {
   note(voxels_[voxel].key, sweep, &Changes::erased);
   const std::size_t block = block_of(voxels_[voxel].key);
   // A voxel of a block far off may stand behind the same bit, so it stays until all have gone.
-  if (--in_block_[block] == 0) masks_[block] = 0;
-  --in_region_[region_of(voxels_[voxel].key)];
+  if (--in_block_[block] == 0) {
+    masks_[block] = 0;
+    blocks_[block / 64] &= ~(std::uint64_t{1} << block % 64);
+  }
   // What follows in the same run of slots moves up, so that no search ends at the gap.
   std::size_t gap = voxels_[voxel].slot;
   for (std::size_t slot = (gap + 1) & mask_; numbers_[slot] != 0; slot = (slot + 1) & mask_) {

@@ -183,9 +183,9 @@ BENCHMARK(euclidean_clusters<KdTreeClusters>)->Unit(benchmark::kMillisecond);
 
 void ground_surface(benchmark::State& state) {
   const SurfaceSettings ours = DetectSettings::for_cloud().surface;
-  GroundSurface surface(max_points(), limits().ground_cells);
+  GroundSurface surface(ground_surface_of(ours), max_points(), limits().ground_cells);
   const PointCloud& points = ran().sloped().cells.points();
-  for (auto _ : state) surface.build(points, ground_surface_of(ours));
+  for (auto _ : state) surface.build(points);
 }
 BENCHMARK(ground_surface)->Unit(benchmark::kMillisecond);
 

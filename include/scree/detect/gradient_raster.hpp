@@ -16,17 +16,21 @@ namespace scree {
 /// enters a few sums once, and no pairs of points are looked at.
 class GradientRaster {
 public:
-  explicit GradientRaster(std::size_t max_places) : places_(max_places) {}
+  explicit GradientRaster(std::size_t max_places) : places_(max_places), is_near_(max_places) {}
 
-  /// Sums the kernel's weights and the weighed elevations at each place.
+  enum class Role : std::uint8_t {
+    left_out,
+    counts,
+    asks,  ///< counts, and its slope will be asked for
+  };
+  /// Sums the kernel's weights and the weighed elevations at the places around those that ask.
   /// @param points finite
-  /// @param left_out for each of them whether it does not count; 0: it does
+  /// @param roles of each of them
   /// @param gradient where the points need more than max_places, its lengths are doubled until they
   /// do not
-  void build(PointView points, std::span<const std::uint8_t> left_out,
-             const ElevationGradient& gradient);
+  void build(PointView points, std::span<const Role> roles, const ElevationGradient& gradient);
 
-  /// Slope of the elevation at the place nearest to a point of build().
+  /// Slope of the elevation at the place nearest to a point of build() that asks.
   Slope at(float x, float y) const;
 
 private:
@@ -40,6 +44,7 @@ private:
            static_cast<std::size_t>(column);
   }
   void lay_out(PointView points, float spacing);
+  void mark_near(std::int32_t column, std::int32_t row);
   void add(float u, float v, float z);
 
   float low_x_ = 0, low_y_ = 0, spacing_ = 1, inverse_ = 1;
@@ -48,6 +53,10 @@ private:
   std::int32_t min_neighbours_ = 1;
   std::int32_t columns_ = 0, rows_ = 0;
   FixedVector<Place> places_;
+  static constexpr std::uint8_t kIsNear = 1, kAsks = 3;
+  /// Of each square between four places whether its points matter to one that asks, and whether one
+  /// in it does.
+  FixedVector<std::uint8_t> is_near_;
 };
 
 }  // namespace scree

@@ -10,41 +10,33 @@
 
 #include "scree/core/fixed_vector.hpp"
 #include "scree/core/point_cloud.hpp"
-#include "scree/detect/depressions.hpp"
-#include "scree/detect/ground_trend.hpp"
-#include "scree/detect/label.hpp"
-#include "scree/detect/planar_windows.hpp"
-#include "scree/detect/raster_fill.hpp"
+#include "scree/detect/ground_finder.hpp"
 
 namespace scree {
 
 struct GroundSurfaceSettings {
   float cell_size;    ///< edge of a cell of the raster, metres; more for a sparse or wide cloud
   float cell_points;  ///< least mean number of points in the cells that have any
-  float max_slope;    ///< steeper cells are no ground, metres per metre
-  float tolerance;    ///< a smooth patch this close to the ground's surface belongs to it, metres
-  float trend_reach;  ///< reach of GroundTrend, metres; 0: without it
+  GroundFinderSettings finder;
 };
 
-/// The surface that the robot could drive on, under rocks and over holes. Cells of the plane that
-/// are nowhere steep make patches; the largest is ground, and so are those that lie in its
-/// continuation or on the trend of the whole. What is left, the flanks and tops of rocks, the walls
-/// and floors of holes, is spanned from the ground around it. The paper has no such stage: its
-/// heights are above the surroundings of a cluster, which tilts on slopes and between two tall
-/// rocks.
+/// The surface that the robot could drive on, under rocks and over holes: GroundFinder's, on a
+/// raster of the heights of points. The paper has no such stage: its heights are above the
+/// surroundings of a cluster, which tilts on slopes and between two tall rocks.
 class GroundSurface {
 public:
-  GroundSurface(std::size_t max_points, std::size_t max_cells);
+  GroundSurface(const GroundSurfaceSettings& settings, std::size_t max_points,
+                std::size_t max_cells);
 
-  /// A rough surface is right to some centimetres, and takes half the time.
-  enum class Accuracy : std::uint8_t { full, rough };
   /// @pre finite points, no more than max_points of them
-  void build(PointView points, const GroundSurfaceSettings& settings,
-             Accuracy accuracy = Accuracy::full);
-  /// Builds the surface of the same points again. In loose cells the height is what was seen lowest
-  /// instead of the median: below grass the ground goes on. The raster stays.
+  void build(PointView points);
+  /// Builds a surface that is right to some centimetres, from cells twice as wide, in a quarter of
+  /// the time. Of it only heights are known; the raster is that of build_below(). @pre as build()
+  void build_roughly(PointView points);
+  /// Builds the surface of the same points. In loose cells the height is what was seen lowest
+  /// instead of the median: below grass the ground goes on.
   /// @param loose for each cell of the raster whether it is loose; 0: it is not
-  void build_below(std::span<const std::uint8_t> loose, const GroundSurfaceSettings& settings);
+  void build_below(std::span<const std::uint8_t> loose);
 
   /// Gives z of the surface of the last build, bilinear, metres. A place outside the raster has the
   /// height of the nearest cell.
@@ -57,23 +49,19 @@ public:
   void for_each_height(PointView points, Visit&& visit) const;
 
   // The raster, row by row, for stages that walk over it.
-  bool is_ground(std::size_t cell) const { return ground_[cell] != 0; }
+  bool is_ground(std::size_t cell) const { return finder_.is_ground(cell); }
   /// Distance of the height that was seen in a cell from the surface, metres. @pre is_ground(cell)
-  float roughness(std::size_t cell) const { return std::abs(seen_[cell] - smooth_[cell]); }
+  float roughness(std::size_t cell) const { return std::abs(seen_[cell] - level(cell)); }
   /// Median height of the points in a cell, metres; NaN: not seen.
   float seen(std::size_t cell) const { return seen_[cell]; }
   /// z of the surface in the middle of a cell, metres.
-  float level(std::size_t cell) const { return smooth_[cell]; }
+  float level(std::size_t cell) const { return finder_.levels()[cell]; }
   /// z of the highest point in a cell, metres; minus infinity without one.
   float top(std::size_t cell) const { return top_[cell]; }
   /// Whether a cell lies in a crater whose flanks are gentle enough for ground.
-  bool is_crater(std::size_t cell) const { return depressions_.holds(cell); }
+  bool is_crater(std::size_t cell) const { return finder_.is_crater(cell); }
   /// Area of the smooth patch that a cell belongs to, square metres; 0: to none.
-  float patch_area(std::size_t cell) const {
-    return patch_[cell] == kNoLabel
-               ? 0
-               : static_cast<float>(patches_[patch_[cell]].cells) * cell_ * cell_;
-  }
+  float patch_area(std::size_t cell) const { return finder_.patch_area(cell); }
   std::size_t columns() const { return columns_; }
   std::size_t rows() const { return rows_; }
   float cell_size() const { return cell_; }
@@ -116,22 +104,18 @@ private:
   /// Sorts the points by cells and sets the heights of these.
   /// @return the mean number of points in the cells that have any
   float gather(PointView points);
-  /// Finds the ground and lays the surface through it, from the heights of the cells.
-  void find_ground(const GroundSurfaceSettings& settings, Accuracy accuracy);
-  void find_smooth_cells(float max_slope);
-  void add_planar_cells(float max_slope);
-  void find_patches(float max_slope);
-  void join_windows();
-  template <class Visit>
-  void for_each_planar_cell(const Visit& visit) const;
-  void join_trend(float tolerance);
-  void join_patches(float tolerance, Accuracy accuracy);
-  void mark_ground();
-  void span(int steps);
-  /// Mean height difference of the two neighbours of a cell (Sobel's 1-2-1 across), metres.
-  float rise(std::size_t cell, std::size_t along, std::size_t across) const;
-  float blurred(std::size_t cell) const;
+  void fill_raster(PointView points);
+  void find_ground();
+  void halve();
+  /// The raster of the last surface.
+  struct Levels {
+    const float* heights;  ///< in the middle of each cell
+    std::size_t columns, rows;
+    float inverse;  ///< cells a metre
+  };
+  Levels levels() const;
 
+  GroundSurfaceSettings settings_;
   float cell_ = 1, inverse_ = 1, low_x_ = 0, low_y_ = 0;
   std::size_t columns_ = 0, rows_ = 0;
   FixedVector<std::uint32_t> begin_;    // where each cell's points begin in z_, and one more
@@ -139,20 +123,11 @@ private:
   FixedVector<float> z_;                // z of the points, cell by cell
   FixedVector<float> seen_;             // height seen in each cell; NaN: no point
   FixedVector<float> top_;              // z of the highest point in each cell
-  FixedVector<float> smooth_;           // scratch: blurred heights, then the surface
-  FixedVector<std::uint8_t> ground_;
-  FixedVector<std::uint32_t> patch_;  // number of each cell's patch
-  FixedVector<std::uint32_t> queue_;
-  struct Patch {
-    std::uint32_t cells = 0;
-    float residual = 0;
-    bool is_ground = false;
-  };
-  FixedVector<Patch> patches_;
-  PlanarWindows windows_;
-  GroundTrend trend_;
-  RasterFill fill_;
-  Depressions depressions_;
+  GroundFinder finder_;
+  // The same from cells twice as wide.
+  FixedVector<float> rough_seen_;
+  GroundFinder rough_finder_;
+  bool is_rough_ = false;
 };
 
 inline std::size_t GroundSurface::cell_at(float x, float y) const {
@@ -174,6 +149,11 @@ void GroundSurface::for_each_height(PointView points, Visit&& visit) const {
   }
 }
 
+inline GroundSurface::Levels GroundSurface::levels() const {
+  if (!is_rough_) return {finder_.levels(), columns_, rows_, inverse_};
+  return {rough_finder_.levels(), (columns_ + 1) / 2, (rows_ + 1) / 2, inverse_ / 2};
+}
+
 inline float GroundSurface::height(float x, float y) const {
   const auto split = [](float value, std::size_t count, float& share) {
     const float inside = std::clamp(value - 0.5F, 0.0F, static_cast<float>(count) - 1.001F);
@@ -181,12 +161,13 @@ inline float GroundSurface::height(float x, float y) const {
     share = inside - static_cast<float>(index);
     return static_cast<std::size_t>(index);
   };
+  const Levels raster = levels();
   float u = 0, v = 0;
-  const std::size_t column = split((x - low_x_) * inverse_, columns_, u);
-  const std::size_t row = split((y - low_y_) * inverse_, rows_, v);
-  const float* const at = smooth_.data() + row * columns_ + column;
+  const std::size_t column = split((x - low_x_) * raster.inverse, raster.columns, u);
+  const std::size_t row = split((y - low_y_) * raster.inverse, raster.rows, v);
+  const float* const at = raster.heights + row * raster.columns + column;
   const float near = at[0] + u * (at[1] - at[0]);
-  const float far = at[columns_] + u * (at[columns_ + 1] - at[columns_]);
+  const float far = at[raster.columns] + u * (at[raster.columns + 1] - at[raster.columns]);
   return near + v * (far - near);
 }
 

@@ -67,7 +67,7 @@ private:
   BeamGrid beam_grid_;
   FixedVector<float> height_;                // above the surface, of each point
   FixedVector<std::uint8_t> is_off_ground_;  // for each of them
-  FixedVector<std::uint8_t> is_hidden_;      // from above, for each of them
+  FixedVector<GradientRaster::Role> roles_;  // for each of them
   CandidatePoints candidates_, kept_;
   EuclideanClusters euclidean_;
   PointCloud split_;  // for Euclidean clustering

@@ -27,6 +27,11 @@ public:
   /// Counts beams that went through the cell of a point.
   /// @param sweep its number, from 1 on
   void add_misses(const Eigen::Vector3f& point, std::uint32_t sweep, std::uint16_t beams);
+  /// Counts beams that went along a line through the cells of places on it, a cell's edge apart.
+  /// @param along of length one
+  /// @param end of the line, metres from its beginning
+  void add_beams(const Eigen::Vector3f& from, const Eigen::Vector3f& along, float end,
+                 std::uint32_t sweep, std::uint16_t beams);
   /// Counts a beam that ended in the cell of a point.
   /// @param sweep its number, from 1 on
   void add_hit(const Eigen::Vector3f& point, std::uint32_t sweep);

@@ -96,30 +96,38 @@ public:
   /// Moves all keys. All may have changed in this sweep.
   void shift(int dx, int dy, int dz, std::uint32_t sweep);
 
-  /// The edge of the largest cube around a key, among those of 16, 4 and 1 voxels, that surely
-  /// holds none; 0 where there may be one. Most of a beam's way is empty, and is passed quickly by
-  /// this.
-  int empty_edge(const VoxelKey& key) const {
-    if (in_region_[region_of(key)] == 0) return 16;
-    const std::uint64_t mask = masks_[block_of(key)];
-    if (mask == 0) return 4;
-    return (mask >> bit_of(key) & 1) == 0 ? 1 : 0;
+  /// A block of 4 x 4 x 4 voxels: its number along each axis, counted from the origin.
+  static constexpr int kBlockBits = 2;
+  struct BlockKey {
+    std::int32_t x = 0, y = 0, z = 0;
+    bool operator==(const BlockKey&) const = default;
+
+    static BlockKey of(const VoxelKey& key) {
+      return {key.x >> kBlockBits, key.y >> kBlockBits, key.z >> kBlockBits};
+    }
+  };
+  /// The voxels that there may be in a block, a bit each; 0: surely none. Most of a beam's way is
+  /// empty, and is passed quickly by this.
+  std::uint64_t voxels_in(const BlockKey& block) const {
+    const std::size_t slot = slot_of(block);
+    return (blocks_[slot / 64] >> (slot % 64) & 1) == 0 ? 0 : masks_[slot];
+  }
+  /// Whether there may be a voxel in a block with these voxels; false where it lies in another one.
+  static bool may_hold(const BlockKey& block, std::uint64_t voxels, const VoxelKey& key) {
+    return (voxels >> bit_of(key) & 1) != 0 && BlockKey::of(key) == block;
   }
 
 private:
-  /// Blocks, and regions, that lie far apart share a count.
+  /// Blocks that lie far apart share a count.
   using BlockGrid = ToroidalGrid<128, 32>;
-  using RegionGrid = ToroidalGrid<64, 16>;
 
-  static std::size_t block_of(const VoxelKey& key) {
-    return BlockGrid::CellIndex{key.x >> 2, key.y >> 2, key.z >> 2}.slot();
+  static std::size_t slot_of(const BlockKey& block) {
+    return BlockGrid::CellIndex{block.x, block.y, block.z}.slot();
   }
+  static std::size_t block_of(const VoxelKey& key) { return slot_of(BlockKey::of(key)); }
   /// The bit of a voxel in its block's mask.
   static unsigned bit_of(const VoxelKey& key) {
     return static_cast<unsigned>((key.x & 3) | (key.y & 3) << 2 | (key.z & 3) << 4);
-  }
-  static std::size_t region_of(const VoxelKey& key) {
-    return RegionGrid::CellIndex{key.x >> 4, key.y >> 4, key.z >> 4}.slot();
   }
   std::size_t home_slot(const VoxelKey& key) const;
   /// The slot of a voxel, or the free one where it would stand.
@@ -136,10 +144,10 @@ private:
   FixedVector<MapVoxel> voxels_;
   FixedVector<std::uint32_t> numbers_;  // by slot: the voxel's index plus one, 0 is free
   std::size_t mask_;
-  FixedVector<std::uint64_t> masks_;      // of each block the voxels that there may be
-  FixedVector<std::uint16_t> in_block_;   // voxels, by block of 4 x 4 x 4
-  FixedVector<std::uint16_t> in_region_;  // voxels, by region of 16 x 16 x 16
-  FixedVector<Changes> changes_;          // by block
+  FixedVector<std::uint64_t> masks_;     // of each block the voxels that there may be
+  FixedVector<std::uint64_t> blocks_;    // those with any, a bit each: few enough for a cache
+  FixedVector<std::uint16_t> in_block_;  // voxels, by block of 4 x 4 x 4
+  FixedVector<Changes> changes_;         // by block
 };
 
 /// Sixteen voxels side by side have sixteen slots side by side: a line of a processor's cache.

@@ -31,11 +31,7 @@ protected:
       beams_.push_back({static_cast<float>(ended), static_cast<float>(passed),
                         0.01F * static_cast<float>(ended % 7)});
     }
-    surface_.build(cloud_, {.cell_size = kCell,
-                            .cell_points = 1,
-                            .max_slope = 0.34F,
-                            .tolerance = 0.1F,
-                            .trend_reach = 0});
+    surface_.build(cloud_);
   }
 
   std::size_t cells() const { return surface_.columns() * surface_.rows(); }
@@ -43,7 +39,11 @@ protected:
 
   PointCloud cloud_{kPoints};
   std::vector<BeamCount> beams_;
-  GroundSurface surface_{kPoints, kCells};
+  GroundSurface surface_{{.cell_size = kCell,
+                          .cell_points = 1,
+                          .finder = {.max_slope = 0.34F, .tolerance = 0.1F, .trend_reach = 0}},
+                         kPoints,
+                         kCells};
   BeamGrid beam_grid_{kCells};
 };
 
@@ -226,11 +226,7 @@ TEST_F(BeamGridTest, PointsThatFoundNoRoomMayLieBeyondTheRaster) {
   for (std::size_t i = 0; i < few.capacity(); ++i) {
     few.push_back(0.1F * static_cast<float>(i % 10), 0.1F * static_cast<float>(i / 10), 0, 0);
   }
-  surface_.build(few, {.cell_size = kCell,
-                       .cell_points = 1,
-                       .max_slope = 0.34F,
-                       .tolerance = 0.1F,
-                       .trend_reach = 0});
+  surface_.build(few);
   beam_grid_.build(cloud_, beams_, surface_, kLowest, kHighest);
   for (std::size_t cell = 0; cell < cells(); ++cell) {
     if (!surface_.has_neighbours(cell)) {

@@ -36,7 +36,7 @@ protected:
         if (std::abs(z) >= kBody) bodies_.push_back(cloud_, cloud_.size() - 1, 0, 0, z);
       }
     }
-    surface_.build(cloud_, ground_surface_of(DetectSettings::for_map().surface));
+    surface_.build(cloud_);
     solidity_.build(cloud_, beams_, surface_, kBody, 2);
     regions_.label(bodies_, surface_, solidity_, {kTolerance, kSaddle});
   }
@@ -57,7 +57,7 @@ protected:
   PointCloud cloud_{1 << 16};
   std::vector<BeamCount> beams_;
   CandidatePoints bodies_{1 << 16};
-  GroundSurface surface_{1 << 16, 1 << 16};
+  GroundSurface surface_{ground_surface_of(DetectSettings::for_map().surface), 1 << 16, 1 << 16};
   BeamGrid solidity_{1 << 16};
   BodyRegions regions_{1 << 16, 1 << 16};
 };

@@ -11,11 +11,10 @@
 namespace scree::test {
 
 /// Of the shipped profile for clouds.
-inline constexpr GroundSurfaceSettings kGroundSettings{.cell_size = 0.08F,
-                                                       .cell_points = 2.15F,
-                                                       .max_slope = 0.34F,
-                                                       .tolerance = 0.1F,
-                                                       .trend_reach = 0};
+inline constexpr GroundSurfaceSettings kGroundSettings{
+    .cell_size = 0.08F,
+    .cell_points = 2.15F,
+    .finder = {.max_slope = 0.34F, .tolerance = 0.1F, .trend_reach = 0}};
 
 inline bool in_square(float x, float y, float half_width) {
   return std::abs(x) < half_width && std::abs(y) < half_width;

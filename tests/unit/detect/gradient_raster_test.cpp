@@ -11,8 +11,10 @@
 namespace scree {
 namespace {
 
-std::vector<std::uint8_t> none_of(const PointCloud& cloud) {
-  return std::vector<std::uint8_t>(cloud.size(), 0);
+using Role = GradientRaster::Role;
+
+std::vector<Role> all_ask(const PointCloud& cloud) {
+  return std::vector<Role>(cloud.size(), Role::asks);
 }
 
 class GradientRasterOf : public testing::TestWithParam<double> {};  // bandwidth in radii
@@ -22,7 +24,7 @@ TEST_P(GradientRasterOf, IsTheFormulaOfThePaperAtItsPlaces) {
   const double d = 0.2, r = 0.23, bandwidth = GetParam() * r;
   const int least = 2;
   GradientRaster raster(10'000);
-  raster.build(cloud, none_of(cloud), {float(d), float(r), float(bandwidth), least});
+  raster.build(cloud, all_ask(cloud), {float(d), float(r), float(bandwidth), least});
   std::size_t known = 0, on_the_rim = 0;
   for (std::size_t i = 0; i < cloud.size(); i += 7) {
     // Places are whole multiples of d.
@@ -47,23 +49,43 @@ INSTANTIATE_TEST_SUITE_P(Bandwidths, GradientRasterOf, testing::Values(2.0, 1.0,
 
 TEST(GradientRaster, DoesNotCountWhatIsLeftOut) {
   PointCloud cloud = test::scattered(20'000, 2, 0);
-  std::vector<std::uint8_t> left_out(cloud.size(), 0);
+  std::vector<Role> roles = all_ask(cloud);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    left_out[i] = i % 2 == 0 ? 1 : 0;
-    cloud.z[i] = left_out[i] != 0 ? cloud.x[i] * 5 : cloud.x[i] * 0.3F;
+    if (i % 2 == 0) roles[i] = Role::left_out;
+    cloud.z[i] = roles[i] == Role::left_out ? cloud.x[i] * 5 : cloud.x[i] * 0.3F;
   }
   GradientRaster raster(10'000);
-  raster.build(cloud, left_out, {0.1F, 0.11F, 0.22F, 1});
+  raster.build(cloud, roles, {0.1F, 0.11F, 0.22F, 1});
   const Slope slope = raster.at(0, 0);
   EXPECT_NEAR(slope.x, 0.3, 0.03);
   EXPECT_NEAR(slope.y, 0, 0.03);
+}
+
+TEST(GradientRaster, IsTheSameWhereFewAskAsWhereAllDo) {
+  const PointCloud cloud = test::bump_and_bowl(4000);
+  const ElevationGradient gradient{0.1F, 0.13F, 0.2F, 1};
+  GradientRaster all(10'000), few(10'000);
+  std::vector<Role> roles(cloud.size(), Role::counts);
+  for (std::size_t i = 0; i < cloud.size(); i += 37) roles[i] = Role::asks;
+  all.build(cloud, all_ask(cloud), gradient);
+  few.build(cloud, roles, gradient);
+  std::size_t known = 0;
+  for (std::size_t i = 0; i < cloud.size(); i += 37) {
+    const Slope expected = all.at(cloud.x[i], cloud.y[i]), slope = few.at(cloud.x[i], cloud.y[i]);
+    EXPECT_EQ(std::isnan(slope.x), std::isnan(expected.x));
+    if (std::isnan(expected.x)) continue;
+    ++known;
+    EXPECT_EQ(slope.x, expected.x);
+    EXPECT_EQ(slope.y, expected.y);
+  }
+  EXPECT_GT(known, 30U);
 }
 
 TEST(GradientRaster, IsNotKnownWherePointsLack) {
   PointCloud cloud(3);
   for (const float x : {0.0F, 0.1F, 5.0F}) cloud.push_back(x, 0, 0, 0);
   GradientRaster raster(10'000);
-  raster.build(cloud, none_of(cloud), {0.1F, 0.11F, 0.22F, 1});
+  raster.build(cloud, all_ask(cloud), {0.1F, 0.11F, 0.22F, 1});
   for (const float x : cloud.x) EXPECT_TRUE(std::isnan(raster.at(x, 0).x));
   raster.build(PointCloud(), {}, {0.1F, 0.11F, 0.22F, 1});
 }
@@ -72,7 +94,7 @@ TEST(GradientRaster, GrowsCoarserWhereACloudIsTooWideForIt) {
   PointCloud cloud = test::scattered(20'000, 5, 0);
   for (std::size_t i = 0; i < cloud.size(); ++i) cloud.z[i] = 0.4F * cloud.x[i] - 0.2F * cloud.y[i];
   GradientRaster raster(1000);  // 10 m in steps of 0.1 m would be ten times as many
-  raster.build(cloud, none_of(cloud), {0.1F, 0.11F, 0.22F, 1});
+  raster.build(cloud, all_ask(cloud), {0.1F, 0.11F, 0.22F, 1});
   EXPECT_NEAR(raster.at(1, -1).x, 0.4, 0.03);
   EXPECT_NEAR(raster.at(1, -1).y, -0.2, 0.03);
 }

@@ -45,7 +45,7 @@ Obstacle box_at(ObstacleKind kind, double x, double y, double edge) {
 class GridMakerTest : public testing::Test {
 protected:
   const ObstacleGrid& look(const PointCloud& cloud, const GridSettings& settings = kSettings) {
-    surface_.build(cloud, test::kGroundSettings);
+    surface_.build(cloud);
     maker_ = GridMaker(settings);
     return make();
   }
@@ -61,7 +61,7 @@ protected:
   CellState state(double x, double y) const { return grid_->state[cell_at(x, y)]; }
   double ground(double x, double y) const { return 0.01 * grid_->ground[cell_at(x, y)]; }
 
-  GroundSurface surface_{60'000, 1 << 15};
+  GroundSurface surface_{test::kGroundSettings, 60'000, 1 << 15};
   Pose surface_in_odom_;
   ObstacleList list_{4};
   GridMaker maker_{kSettings};

@@ -30,7 +30,7 @@ PointCloud shaped(const std::function<float(float, float)>& height) {
 class GroundEdgesTest : public testing::Test {
 protected:
   std::span<const GroundEdge> edges_of(PointView cloud, std::span<const PassingBeam> lost = {}) {
-    surface_.build(cloud, test::kGroundSettings);
+    surface_.build(cloud);
     const Eigen::Vector3f sensor(-6, 0, 1);
     SeenCloud with_beams{.points = cloud};
     if (!lost.empty()) {
@@ -42,7 +42,7 @@ protected:
     return edges_.all();
   }
 
-  GroundSurface surface_{kEdgePoints + 2, kEdgeCells};
+  GroundSurface surface_{test::kGroundSettings, kEdgePoints + 2, kEdgeCells};
   HoleEvidence evidence_{kEdgeCells};
   GroundEdges edges_{kEdgeCells};
 };

@@ -36,12 +36,12 @@ class GroundSurfaceTest : public testing::TestWithParam<float> {
 protected:
   static GroundSurfaceSettings settings_for_test() {
     GroundSurfaceSettings settings = test::kGroundSettings;
-    settings.trend_reach = GetParam();
+    settings.finder.trend_reach = GetParam();
     return settings;
   }
   static GroundSurface surface_of(PointView cloud) {
-    GroundSurface surface(kMaxPoints, kMaxCells);
-    surface.build(cloud, settings_for_test());
+    GroundSurface surface(settings_for_test(), kMaxPoints, kMaxCells);
+    surface.build(cloud);
     return surface;
   }
 };
@@ -111,11 +111,34 @@ TEST_P(GroundSurfaceTest, GoesOnBelowTheGrassThatSurroundsAHollow) {
     const float x = cloud.x[i], y = cloud.y[i];
     if (is_grass(x, y)) loose[surface.cell_at(x, y)] = 1;
   }
-  surface.build_below(loose, settings_for_test());
+  surface.build_below(loose);
   for (float x = -3; x < 3.1F; x += 0.25F) {
     EXPECT_NEAR(surface.height(x, 0), hollow(x, 0), 0.03) << x;
   }
   EXPECT_TRUE(is_ground(surface, 0, 0));
+}
+
+TEST_P(GroundSurfaceTest, IsAsGoodAsWantedWhereItIsRough) {
+  const PointCloud cloud = seen([](float x, float y) {
+    return slope(x) + (test::in_square(x, y, 0.4F) ? 0.5F : 0.0F) -
+           (test::in_square(x - 2, y, 0.4F) ? 0.4F : 0.0F);
+  });
+  GroundSurface surface(settings_for_test(), kMaxPoints, kMaxCells);
+  surface.build_roughly(cloud);
+  std::vector<float> heights(cloud.size());
+  surface.heights_above(cloud, heights);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const float x = cloud.x[i], y = cloud.y[i];
+    // A slope ends with the raster.
+    if (test::in_square(x, y, 3.7F)) EXPECT_NEAR(surface.height(x, y), slope(x), 0.06);
+    EXPECT_NEAR(heights[i], cloud.z[i] - surface.height(x, y), 1e-5);
+  }
+  const std::vector<std::uint8_t> none_is_loose(surface.columns() * surface.rows(), 0);
+  surface.build_below(none_is_loose);
+  const GroundSurface at_once = surface_of(cloud);
+  for (std::size_t cell = 0; cell < none_is_loose.size(); ++cell) {
+    EXPECT_EQ(surface.level(cell), at_once.level(cell));
+  }
 }
 
 TEST_P(GroundSurfaceTest, IsNotMovedBySinglePointsThatBelongToNothing) {
@@ -183,10 +206,10 @@ TEST(GroundSurface, TheTrendGoesOnWithASlopeFromRingToRing) {
       see(away * std::cos(angle), away * std::sin(angle));
     }
   }
-  GroundSurface surface(kMaxPoints, kMaxCells);
   GroundSurfaceSettings settings = test::kGroundSettings;
-  settings.trend_reach = 2;
-  surface.build(cloud, settings);
+  settings.finder.trend_reach = 2;
+  GroundSurface surface(settings, kMaxPoints, kMaxCells);
+  surface.build(cloud);
   EXPECT_NEAR(surface.height(4.5F, 0), slope(4.5F), 0.06);
   EXPECT_NEAR(surface.height(-7, 0), slope(-7), 0.06);
   EXPECT_NEAR(surface.height(7, 0), slope(7), 0.06);

@@ -23,7 +23,7 @@ using Height = std::function<float(float, float)>;
 struct World {
   PointCloud cloud{kHolePoints};
   CandidatePoints below{kHolePoints};
-  GroundSurface surface{kHolePoints, kHoleCells};
+  GroundSurface surface{test::kGroundSettings, kHolePoints, kHoleCells};
   HoleEvidence evidence{kHoleCells};
 
   explicit World(const Height& height, std::size_t points = 30'000) {
@@ -35,7 +35,7 @@ struct World {
       if (std::isnan(z)) continue;
       cloud.push_back(x, y, z + noise(random), 0);
     }
-    surface.build(cloud, test::kGroundSettings);
+    surface.build(cloud);
   }
 
   /// Of the points more than 0.1 m below the surface.

@@ -11,6 +11,11 @@ namespace {
 
 using Reference = std::map<std::tuple<int, int, int>, std::uint8_t>;
 
+bool may_hold(const VoxelHashMap& map, const VoxelKey& key) {
+  const VoxelHashMap::BlockKey block = VoxelHashMap::BlockKey::of(key);
+  return VoxelHashMap::may_hold(block, map.voxels_in(block), key);
+}
+
 void expect_same(const VoxelHashMap& map, const Reference& reference) {
   ASSERT_EQ(map.size(), reference.size());
   for (const auto& [key, hits] : reference) {
@@ -19,17 +24,20 @@ void expect_same(const VoxelHashMap& map, const Reference& reference) {
                          static_cast<std::int16_t>(z)};
     ASSERT_NE(map.find(voxel), nullptr);
     EXPECT_EQ(map.find(voxel)->hits, hits);
-    EXPECT_EQ(map.empty_edge(voxel), 0);
+    EXPECT_TRUE(may_hold(map, voxel));
   }
 }
 
-TEST(VoxelHashMap, KnowsTheLargestCubeAroundAPlaceThatIsEmpty) {
+TEST(VoxelHashMap, KnowsWhichVoxelsABlockMayHold) {
   VoxelHashMap map(10);
   map.find_or_add({1, 1, 1});
-  EXPECT_EQ(map.empty_edge({1, 1, 1}), 0);
-  EXPECT_EQ(map.empty_edge({2, 1, 1}), 1);
-  EXPECT_EQ(map.empty_edge({4, 1, 1}), 4);
-  EXPECT_EQ(map.empty_edge({-1, 1, 1}), 16);
+  EXPECT_TRUE(may_hold(map, {1, 1, 1}));
+  EXPECT_FALSE(may_hold(map, {2, 1, 1}));
+  EXPECT_FALSE(may_hold(map, {5, 1, 1}));
+  const VoxelHashMap::BlockKey first = VoxelHashMap::BlockKey::of({1, 1, 1});
+  EXPECT_NE(map.voxels_in(first), 0U);
+  EXPECT_FALSE(VoxelHashMap::may_hold(first, map.voxels_in(first), {5, 1, 1}));
+  EXPECT_EQ(map.voxels_in(VoxelHashMap::BlockKey::of({-1, 1, 1})), 0U);
 }
 
 TEST(VoxelHashMap, VoxelsFarOffMayGoWithoutHidingOthers) {
@@ -39,10 +47,10 @@ TEST(VoxelHashMap, VoxelsFarOffMayGoWithoutHidingOthers) {
   map.erase(0, 1);
   EXPECT_EQ(map.find({1, 1, 1}), nullptr);
   EXPECT_NE(map.find({513, 1, 1}), nullptr);
-  EXPECT_EQ(map.empty_edge({513, 1, 1}), 0);
+  EXPECT_TRUE(may_hold(map, {513, 1, 1}));
   map.erase(0, 1);
   EXPECT_EQ(map.find({513, 1, 1}), nullptr);
-  EXPECT_GT(map.empty_edge({513, 1, 1}), 0);
+  EXPECT_FALSE(may_hold(map, {513, 1, 1}));
 }
 
 TEST(VoxelHashMap, WhatChangesIsNotedForAllAroundIt) {
@@ -100,7 +108,7 @@ TEST(VoxelHashMap, HoldsWhatAPlainMapHolds) {
 
   map.clear();
   expect_same(map, {});
-  EXPECT_EQ(map.empty_edge({100, -1000, 7}), 16);
+  EXPECT_FALSE(may_hold(map, {100, -1000, 7}));
 }
 
 }  // namespace

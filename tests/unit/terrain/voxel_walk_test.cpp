@@ -20,15 +20,9 @@ std::vector<VoxelKey> step_by_step(const VoxelHashMap& map, const VoxelWalk& wal
 
 std::vector<VoxelKey> by_leaps(const VoxelHashMap& map, const VoxelWalk& walk, int steps) {
   std::vector<VoxelKey> met;
-  for (int step = 0; step < steps; ++step) {
-    const Eigen::Vector3f place = walk.at(step);
-    const VoxelKey key = VoxelKey::at(place);
-    if (const int edge = map.empty_edge(key); edge > 0) {
-      if (edge > 1) step += walk.steps_within(edge, key, place);
-      continue;
-    }
-    if (met.empty() || met.back() != key) met.push_back(key);
-  }
+  walk.for_each_voxel(map, steps, [&](int, const VoxelKey& key) {
+    if (map.find(key) != nullptr && (met.empty() || met.back() != key)) met.push_back(key);
+  });
   return met;
 }
 

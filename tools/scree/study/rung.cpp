@@ -21,7 +21,7 @@ SurfaceRung::SurfaceRung(const DetectSettings& settings, const DetectorLimits& l
       points_(limits.points),
       overhangs_(limits.ground_cells),
       sloped_(limits.points),
-      surface_(limits.points, limits.ground_cells),
+      surface_(ground_surface_of(settings.surface), limits.points, limits.ground_cells),
       beam_grid_(limits.ground_cells),
       candidates_(limits.candidates),
       kept_(limits.candidates),
@@ -35,7 +35,7 @@ SurfaceRung::SurfaceRung(const DetectSettings& settings, const DetectorLimits& l
 ClusteredPoints SurfaceRung::find(PointView cloud) {
   take_in(cloud);
   sloped_.cells.build(points_, gradient_.reach());
-  surface_.build(sloped_.points(), ground_surface_of(settings_.surface));
+  surface_.build(sloped_.points());
   // Nothing is known of the beams of a cloud, so all is solid.
   beam_grid_.build(cloud, {}, surface_, static_cast<float>(settings_.surface.body_height),
                    static_cast<float>(settings_.clearance));
