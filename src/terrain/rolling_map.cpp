@@ -12,6 +12,8 @@ namespace {
 constexpr std::uint8_t kMaxHits = 40;
 /// Beams that are remembered for having passed everything: those of about a second.
 constexpr std::size_t kPassingBeams = 16384;
+/// Voxels that are noted for having moved away in a sweep; others wait for prune().
+constexpr std::size_t kMostMoved = 65536;
 
 /// Wraps around in 13 years.
 std::uint32_t tenths(std::int64_t time_ns) {
@@ -25,6 +27,7 @@ RollingMap::RollingMap(const MapSettings& settings, std::size_t max_voxels)
       inverse_(static_cast<float>(1 / settings.voxel)),
       reach_(static_cast<float>(settings.reach)),
       voxels_(max_voxels),
+      moved_(kMostMoved),
       cloud_(voxels_.capacity()),
       passing_(kPassingBeams),
       beams_(cloud_.capacity()),
@@ -35,6 +38,8 @@ void RollingMap::clear() {
   cloud_.clear();
   beams_.clear();
   origins_.clear();
+  moved_.clear();
+  prune_end_ = 0;
   passing_.clear();
   next_passing_ = 0;
   free_space_.clear();
@@ -57,6 +62,8 @@ void RollingMap::add(const DeskewedSweep& sweep, const Pose& pose, std::int64_t 
   trace_rays(sweep, rotation, translation, reach);
   add_passing_beams(sweep, rotation, translation);
   robot_ = translation;
+  remove_moved();
+  fit_reach();
   prune();
   update_cloud();
 }
@@ -246,22 +253,39 @@ void RollingMap::fit_reach() {
   if (used < kRoomy) reach_ = std::min(reach_ / kStep, farthest);
 }
 
-/// Removes what is too far off, what has moved away, what is too old, what was never confirmed.
+void RollingMap::remove_moved() {
+  for (const VoxelKey& key : moved_) {
+    const MapVoxel* const voxel = voxels_.find(key);
+    if (voxel == nullptr || voxel->misses < kMostMisses) continue;
+    voxels_.erase(static_cast<std::size_t>(voxel - voxels_.begin()), sweep_);
+  }
+  moved_.clear();
+}
+
+/// Removes what is too far off, what is too old, what was never confirmed. None of it is in a
+/// hurry: a part of the voxels is looked at in each sweep.
 void RollingMap::prune() {
   constexpr std::uint32_t kConfirmWithin = 30;  // sweeps
-  fit_reach();
   const float reach = reach_;
   const auto kept_ds = static_cast<std::int32_t>(settings_.keep_seconds * 10);
   const std::uint32_t now_ds = tenths(end_ns_);
-  for (std::size_t i = voxels_.size(); i-- > 0;) {
+  prune_end_ = std::min(prune_end_, voxels_.size());
+  if (prune_end_ == 0) {
+    prune_end_ = voxels_.size();
+    prune_step_ = voxels_.size() / kPruneSweeps + 1;
+  }
+  const std::size_t begin = prune_end_ - std::min(prune_step_, prune_end_);
+  // What takes the place of one that goes comes from the end, where all were looked at.
+  for (std::size_t i = prune_end_; i-- > begin;) {
     MapVoxel& voxel = voxels_[i];
     const bool is_far = (voxel.mean - robot_).squaredNorm() > reach * reach;
     const bool has_moved = voxel.misses >= kMostMisses;
     // From the future, too, when the clock was set back.
     const bool is_old = std::abs(static_cast<std::int32_t>(now_ds - voxel.seen_ds)) > kept_ds;
-    const bool is_noise = sweep_ - voxel.last_sweep == kConfirmWithin && !confirm(voxel);
-    if (is_far || has_moved || is_old || is_noise) voxels_.erase(i, sweep_);
+    const bool is_due = sweep_ - voxel.last_sweep - kConfirmWithin < 2 * kPruneSweeps;
+    if (is_far || has_moved || is_old || (is_due && !confirm(voxel))) voxels_.erase(i, sweep_);
   }
+  prune_end_ = begin;
 }
 
 void RollingMap::update_cloud() {

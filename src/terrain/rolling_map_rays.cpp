@@ -61,6 +61,7 @@ void RollingMap::trace_ray(const Eigen::Vector3f& from, const Eigen::Vector3f& b
     const bool is_clear = static_cast<float>(step) * voxel_size < end;
     if (distance < miss_radius && is_clear && voxel->last_sweep != sweep_) {
       voxel->misses = std::min<std::uint8_t>(voxel->misses + 1, kMostMisses);
+      if (voxel->misses == kMostMisses) moved_.push_back(key);
     }
   });
 }

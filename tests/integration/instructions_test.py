@@ -15,7 +15,7 @@ from programs import ProgramTest, main
 SCREE = sys.argv[1]
 # Millions for the drive below. After a change that is meant to cost more or less, write down the
 # number that the test gives.
-EXPECTED = 9_476
+EXPECTED = 9_050
 MOST_MORE = 1.1
 
 

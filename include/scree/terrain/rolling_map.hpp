@@ -26,10 +26,13 @@ namespace scree {
 /// through: dust. A voxel that beams pass through again and again is removed.
 class RollingMap {
 public:
+  /// Within so many sweeps, or twice as many, what is out of date or out of reach is removed.
+  static constexpr std::uint32_t kPruneSweeps = 8;
+
   RollingMap(const MapSettings& settings, std::size_t max_voxels);
 
   /// Adds what is fresh of a sweep that ended at `end_ns`, seen from `pose` (`base` in the map's
-  /// frame), and removes the voxels that are out of date or out of reach.
+  /// frame). What has moved away is removed at once.
   /// @param reach metres from `base`; what lies farther off is not taken
   void add(const DeskewedSweep& sweep, const Pose& pose, std::int64_t end_ns,
            double reach = std::numeric_limits<double>::infinity());
@@ -97,6 +100,7 @@ private:
   void add_passing_beams(const DeskewedSweep& sweep, const Eigen::Matrix3f& rotation,
                          const Eigen::Vector3f& translation);
   void add_passing_beam(const Eigen::Vector3f& origin, const Eigen::Vector3f& beam);
+  void remove_moved();
   void fit_reach();
   void prune();
   Places places_in(const Obstacle& obstacle) const;
@@ -111,6 +115,9 @@ private:
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
   Eigen::Vector3f robot_ = Eigen::Vector3f::Zero();  // from the origin, after the last sweep
   VoxelHashMap voxels_;
+  FixedVector<VoxelKey> moved_;  // within the sweep, what stood there
+  std::size_t prune_end_ = 0;    // of the voxels that this round has not looked at
+  std::size_t prune_step_ = 0;   // voxels that it looks at in a sweep
   FreeSpace free_space_;
   PointCloud cloud_;
   FixedVector<PassingBeam> passing_;  // of the latest sweeps, in a ring

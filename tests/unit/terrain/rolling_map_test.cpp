@@ -18,6 +18,8 @@ namespace {
 
 using RollingMapTest = test::RollingMapFixture;
 
+constexpr int kPruned = 2 * RollingMap::kPruneSweeps;  // sweeps
+
 using Cell = std::tuple<int, int, int>;
 
 Cell cell_of(const Eigen::Vector3d& place) {
@@ -104,18 +106,18 @@ TEST_F(RollingMapTest, ForgetsWhatIsFarOrOld) {
     end_sweep();
   }
   pose_.translation.x() = 11.5;
-  end_sweep();
+  wait(kPruned);
   EXPECT_TRUE(has_near(left));
   pose_.translation.x() = 12.5;
-  end_sweep();
+  wait(kPruned);
   EXPECT_FALSE(has_near(left));
   EXPECT_TRUE(has_near(right));
   EXPECT_EQ(map_.voxels(), 1U);
-  now_ns_ += 59'000'000'000;
-  end_sweep();
+  now_ns_ += 54'000'000'000;
+  wait(kPruned);
   EXPECT_TRUE(has_near(right));
-  now_ns_ += 2'000'000'000;
-  end_sweep();
+  now_ns_ += 4'000'000'000;
+  wait(kPruned);
   EXPECT_EQ(map_.voxels(), 0U);
 
   see({400, 0, 0});
@@ -133,7 +135,7 @@ TEST_F(RollingMapTest, BuildsUpAnewWhenTheClockIsSet) {
       end_sweep();
     }
     now_ns_ += shift;
-    for (int i = 0; i < 3; ++i) {
+    for (int i = 0; i < kPruned; ++i) {
       see(there);
       end_sweep();
     }
@@ -191,7 +193,7 @@ TEST_F(RollingMapTest, DropsAndCountsWhatFindsNoRoomAndRecovers) {
   EXPECT_EQ(map_.dropped(), 3000U);
   for (std::size_t i = 0; i < 500; ++i) EXPECT_NEAR(confirmed(i).z(), 0.024, 1e-6);
   pose_.translation.x() = 20;
-  end_sweep();
+  wait(kPruned);
   EXPECT_EQ(map_.voxels(), 0U);
   look(20);
   EXPECT_EQ(map_.cloud().size(), 500U);
