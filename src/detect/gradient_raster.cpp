@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace scree {
 
@@ -12,34 +13,41 @@ void GradientRaster::build(PointView points, std::span<const Role> roles,
   weight_ = {radius_, gradient.bandwidth / gradient.spacing};
   min_neighbours_ = gradient.min_neighbours;
   places_.assign(index_of(0, rows_), {});
-  is_near_.assign(places_.size(), 0);
   const auto u_of = [&](std::size_t i) { return (points.x[i] - low_x_) * inverse_; };
   const auto v_of = [&](std::size_t i) { return (points.y[i] - low_y_) * inverse_; };
+  const auto square_of = [&](float u, float v) {
+    return index_of(static_cast<std::int32_t>(u), static_cast<std::int32_t>(v));
+  };
+  is_near_.assign(places_.size(), 0);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (roles[i] != Role::asks) continue;
-    mark_near(static_cast<std::int32_t>(u_of(i)), static_cast<std::int32_t>(v_of(i)));
+    if (roles[i] == Role::asks) is_near_[square_of(u_of(i), v_of(i))] = 1;
   }
+  widen_near();
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (roles[i] == Role::left_out) continue;
     const float u = u_of(i), v = v_of(i);
-    const auto column = static_cast<std::int32_t>(u), row = static_cast<std::int32_t>(v);
-    if (is_near_[index_of(column, row)] != 0) add(u, v, points.z[i]);
+    if (is_near_[square_of(u, v)] != 0) add(u, v, points.z[i]);
   }
 }
 
-/// Marks the squares whose points are within the kernel's radius of one of the nine places around a
-/// point of a square: of its corners, and of those beside them.
-void GradientRaster::mark_near(std::int32_t column, std::int32_t row) {
-  std::uint8_t& near = is_near_[index_of(column, row)];
-  if (near == kAsks) return;
-  const auto reach = 2 + static_cast<std::int32_t>(radius_);
-  const std::int32_t left = std::max(column - reach, 0);
-  const std::int32_t right = std::min(column + reach, columns_ - 1);
-  const std::int32_t top = std::min(row + reach, rows_ - 1);
-  for (std::int32_t v = std::max(row - reach, 0); v <= top; ++v) {
-    for (std::int32_t u = left; u <= right; ++u) is_near_[index_of(u, v)] |= kIsNear;
+/// From the squares with points that ask to all whose points are within the kernel's radius of one
+/// of the nine places around such a point: those at the corners of its square, and beside them. A
+/// row may go on at the other end of the raster: a few squares too many.
+void GradientRaster::widen_near() {
+  const auto reach = static_cast<std::size_t>(radius_) + 2;
+  widen_near(reach, 1);
+  widen_near(reach, static_cast<std::size_t>(columns_));
+}
+
+void GradientRaster::widen_near(std::size_t reach, std::size_t apart) {
+  widened_.copy_from(is_near_);
+  for (std::size_t away = apart; away <= reach * apart; away += apart) {
+    for (std::size_t i = away; i < is_near_.size(); ++i) {
+      widened_[i] |= is_near_[i - away];
+      widened_[i - away] |= is_near_[i];
+    }
   }
-  near = kAsks;
+  std::swap(widened_, is_near_);
 }
 
 /// Two places lie beyond every point, so that every point's nearest place has its eight positions.

@@ -16,7 +16,8 @@ namespace scree {
 /// enters a few sums once, and no pairs of points are looked at.
 class GradientRaster {
 public:
-  explicit GradientRaster(std::size_t max_places) : places_(max_places), is_near_(max_places) {}
+  explicit GradientRaster(std::size_t max_places)
+      : places_(max_places), is_near_(max_places), widened_(max_places) {}
 
   enum class Role : std::uint8_t {
     left_out,
@@ -44,7 +45,8 @@ private:
            static_cast<std::size_t>(column);
   }
   void lay_out(PointView points, float spacing);
-  void mark_near(std::int32_t column, std::int32_t row);
+  void widen_near();
+  void widen_near(std::size_t reach, std::size_t apart);
   void add(float u, float v, float z);
 
   float low_x_ = 0, low_y_ = 0, spacing_ = 1, inverse_ = 1;
@@ -53,10 +55,9 @@ private:
   std::int32_t min_neighbours_ = 1;
   std::int32_t columns_ = 0, rows_ = 0;
   FixedVector<Place> places_;
-  static constexpr std::uint8_t kIsNear = 1, kAsks = 3;
-  /// Of each square between four places whether its points matter to one that asks, and whether one
-  /// in it does.
+  /// Of each square between four places whether its points matter to one that asks.
   FixedVector<std::uint8_t> is_near_;
+  FixedVector<std::uint8_t> widened_;  // scratch
 };
 
 }  // namespace scree

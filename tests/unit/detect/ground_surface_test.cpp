@@ -130,7 +130,9 @@ TEST_P(GroundSurfaceTest, IsAsGoodAsWantedWhereItIsRough) {
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const float x = cloud.x[i], y = cloud.y[i];
     // A slope ends with the raster.
-    if (test::in_square(x, y, 3.7F)) EXPECT_NEAR(surface.height(x, y), slope(x), 0.06);
+    if (test::in_square(x, y, 3.7F)) {
+      EXPECT_NEAR(surface.height(x, y), slope(x), 0.06);
+    }
     EXPECT_NEAR(heights[i], cloud.z[i] - surface.height(x, y), 1e-5);
   }
   const std::vector<std::uint8_t> none_is_loose(surface.columns() * surface.rows(), 0);
