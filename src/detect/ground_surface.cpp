@@ -96,21 +96,23 @@ void GroundSurface::fill_raster(PointView points) {
 }
 
 /// Gives each cell of the rough raster the mean of what was seen in the four that lie in it.
+/// Rounding may put a point one cell beyond its place, where the rough raster ends; it does not
+/// count.
 void GroundSurface::halve() {
   const std::size_t columns = (columns_ + 1) / 2, rows = (rows_ + 1) / 2;
-  rough_seen_.resize(columns * rows);
-  for (std::size_t row = 0; row < rows; ++row) {
-    for (std::size_t column = 0; column < columns; ++column) {
+  rough_seen_.assign(columns * rows, GroundFinder::kUnseen);
+  for (std::size_t row = 1; row + 1 < rows; ++row) {
+    for (std::size_t column = 1; column + 1 < columns; ++column) {
       float height = 0, count = 0;
-      for (std::size_t v = 2 * row; v < std::min(2 * row + 2, rows_); ++v) {
-        for (std::size_t u = 2 * column; u < std::min(2 * column + 2, columns_); ++u) {
+      for (std::size_t v = 2 * row; v < 2 * row + 2; ++v) {
+        for (std::size_t u = 2 * column; u < 2 * column + 2; ++u) {
           const float seen = seen_[v * columns_ + u];
           if (std::isnan(seen)) continue;
           height += seen;
           ++count;
         }
       }
-      rough_seen_[row * columns + column] = count > 0 ? height / count : GroundFinder::kUnseen;
+      if (count > 0) rough_seen_[row * columns + column] = height / count;
     }
   }
 }
