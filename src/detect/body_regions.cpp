@@ -73,9 +73,8 @@ void BodyRegions::label(const CandidatePoints& bodies, const GroundSurface& surf
   sizes_.clear();
   const auto steps = static_cast<int>(std::lround(settings.tolerance / 2 / surface.cell_size()));
   for (const Side side : {Side::above, Side::below}) {
-    const bool has_any = std::ranges::any_of(
-        bodies.height, [side](float height) { return (height > 0) == (side == Side::above); });
-    if (!has_any) continue;
+    const auto is_here = [side](float height) { return is_on(side, height); };
+    if (std::ranges::none_of(bodies.height, is_here)) continue;
     mark(bodies, side, surface, solidity);
     for (int step = 0; step < steps; ++step) {
       // To the sides and to the corners by turns: nearly a circle. Tops fall off in even steps.
@@ -96,7 +95,7 @@ void BodyRegions::mark(const CandidatePoints& bodies, Side side, const GroundSur
   }
   top_.assign(cells, 0);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if ((bodies.height[i] > 0) != (side == Side::above)) continue;
+    if (!is_on(side, bodies.height[i])) continue;
     const std::size_t cell = surface.cell_at(bodies.points.x[i], bodies.points.y[i]);
     const State state = bodies.height[i] > kHanging                      ? hanging
                         : side == Side::above && solidity.is_loose(cell) ? loose
@@ -159,7 +158,7 @@ void BodyRegions::join(float saddle) {
 void BodyRegions::number(const CandidatePoints& bodies, Side side, const GroundSurface& surface) {
   number_.assign(state_.size(), kNoLabel);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if ((bodies.height[i] > 0) != (side == Side::above)) continue;
+    if (!is_on(side, bodies.height[i])) continue;
     const std::size_t cell = surface.cell_at(bodies.points.x[i], bodies.points.y[i]);
     std::uint32_t& number = number_[root_of(parent_, static_cast<std::uint32_t>(cell))];
     if (number == kNoLabel) {

@@ -12,16 +12,9 @@ namespace {
 
 constexpr std::size_t kBorder = 2;  // empty cells all around, so that every cell has neighbours
 
-/// The raster of a surface, for loops that read registers only.
-struct SurfaceRaster {
-  const float* heights;
-  std::int32_t columns, rows;
-  float low_x, low_y, inverse;
-};
-
 /// A place that is no number counts as the raster's edge.
 SCREE_MULTIVERSION
-void subtract_surface(const SurfaceRaster raster, const float* x, const float* y, const float* z,
+void subtract_surface(const LevelRaster raster, const float* x, const float* y, const float* z,
                       std::size_t count, float* __restrict out) {
   const float last_u = static_cast<float>(raster.columns) - 1.001F;
   const float last_v = static_cast<float>(raster.rows) - 1.001F;
@@ -65,9 +58,8 @@ void GroundSurface::build(PointView points) {
 void GroundSurface::build_roughly(PointView points) {
   fill_raster(points);
   halve();
-  rough_finder_.find({(columns_ + 1) / 2, (rows_ + 1) / 2, 2 * cell_}, rough_seen_.data(),
-                     GroundFinder::Accuracy::rough);
-  is_rough_ = true;
+  rough_finder_.find(rough_raster(), rough_seen_.data(), GroundFinder::Accuracy::rough);
+  levels_ = levels_of(rough_finder_, rough_raster());
 }
 
 void GroundSurface::build_below(std::span<const std::uint8_t> loose) {
@@ -79,8 +71,18 @@ void GroundSurface::build_below(std::span<const std::uint8_t> loose) {
 }
 
 void GroundSurface::find_ground() {
-  finder_.find({columns_, rows_, cell_}, seen_.data(), GroundFinder::Accuracy::full);
-  is_rough_ = false;
+  const GroundRaster raster{columns_, rows_, cell_};
+  finder_.find(raster, seen_.data(), GroundFinder::Accuracy::full);
+  levels_ = levels_of(finder_, raster);
+}
+
+LevelRaster GroundSurface::levels_of(const GroundFinder& finder, const GroundRaster& raster) const {
+  return {.heights = finder.levels(),
+          .columns = static_cast<std::int32_t>(raster.columns),
+          .rows = static_cast<std::int32_t>(raster.rows),
+          .low_x = low_x_,
+          .low_y = low_y_,
+          .inverse = 1 / raster.cell_size};
 }
 
 void GroundSurface::fill_raster(PointView points) {
@@ -99,7 +101,7 @@ void GroundSurface::fill_raster(PointView points) {
 /// Rounding may put a point one cell beyond its place, where the rough raster ends; it does not
 /// count.
 void GroundSurface::halve() {
-  const std::size_t columns = (columns_ + 1) / 2, rows = (rows_ + 1) / 2;
+  const auto [columns, rows, cell_size] = rough_raster();
   rough_seen_.assign(columns * rows, GroundFinder::kUnseen);
   for (std::size_t row = 1; row + 1 < rows; ++row) {
     for (std::size_t column = 1; column + 1 < columns; ++column) {
@@ -161,10 +163,7 @@ float GroundSurface::gather(PointView points) {
 }
 
 void GroundSurface::heights_above(PointView points, std::span<float> heights) const {
-  const Levels raster = levels();
-  subtract_surface({raster.heights, static_cast<std::int32_t>(raster.columns),
-                    static_cast<std::int32_t>(raster.rows), low_x_, low_y_, raster.inverse},
-                   points.x.data(), points.y.data(), points.z.data(), points.size(),
+  subtract_surface(levels_, points.x.data(), points.y.data(), points.z.data(), points.size(),
                    heights.data());
 }
 

@@ -35,7 +35,6 @@ SurfaceMethod::SurfaceMethod(const SurfaceSettings& settings, double clearance,
       surface_(ground_surface_of(settings), limits.points, limits.ground_cells),
       beam_grid_(limits.ground_cells),
       height_(limits.points),
-      is_off_ground_(limits.points),
       roles_(limits.points),
       candidates_(limits.candidates),
       kept_(limits.candidates),
@@ -98,7 +97,6 @@ void SurfaceMethod::build_ground(const PointCloud& points, const SeenCloud& clou
 void SurfaceMethod::mark_points_off_ground(const PointCloud& points) {
   const auto least = static_cast<float>(settings_.body_height);
   height_.resize(points.size());
-  is_off_ground_.resize(points.size());
   roles_.resize(points.size());
   surface_.heights_above(points, height_);
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -106,12 +104,11 @@ void SurfaceMethod::mark_points_off_ground(const PointCloud& points) {
     const bool is_low = std::abs(height_[i]) < least;
     // Among grass the ground is seen, and what stands on it.
     const bool is_ground = surface_.is_ground(cell) && !beam_grid_.is_loose(cell);
-    is_off_ground_[i] = is_low || is_ground ? 0 : 1;
     // A rock that is narrower at the ground than above is no less steep for the ground seen below.
     const bool is_hidden = is_low && beam_grid_.stops_all(cell);
-    roles_[i] = is_off_ground_[i] != 0 ? GradientRaster::Role::asks
-                : is_hidden            ? GradientRaster::Role::left_out
-                                       : GradientRaster::Role::counts;
+    roles_[i] = !is_low && !is_ground ? GradientRaster::Role::asks
+                : is_hidden           ? GradientRaster::Role::left_out
+                                      : GradientRaster::Role::counts;
   }
 }
 
@@ -119,25 +116,28 @@ void SurfaceMethod::mark_points_off_ground(const PointCloud& points) {
 /// loses points, and nothing is lost.
 void SurfaceMethod::thin_candidates(StageCounts& counts) {
   std::size_t above = 0, below = 0;
-  for (std::size_t i = 0; i < is_off_ground_.size(); ++i) {
-    if (is_off_ground_[i] != 0) ++(height_[i] > 0 ? above : below);
+  for (std::size_t i = 0; i < roles_.size(); ++i) {
+    if (is_candidate(i)) ++(height_[i] > 0 ? above : below);
   }
   counts.candidates = above + below;
   if (above + below <= max_candidates_ || below >= max_candidates_) return;
   const std::size_t room = max_candidates_ - below;
   std::size_t due = 0;
-  for (std::size_t i = 0; i < is_off_ground_.size(); ++i) {
-    if (is_off_ground_[i] == 0 || height_[i] <= 0) continue;
+  for (std::size_t i = 0; i < roles_.size(); ++i) {
+    if (!is_candidate(i) || height_[i] <= 0) continue;
     due += room;
-    is_off_ground_[i] = due >= above ? 1 : 0;
-    if (due >= above) due -= above;
+    if (due >= above) {
+      due -= above;
+    } else {
+      roles_[i] = GradientRaster::Role::counts;
+    }
   }
 }
 
 void SurfaceMethod::gather_candidates(const PointCloud& points, StageCounts& counts) {
   candidates_.clear();
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (is_off_ground_[i] == 0) continue;
+    if (!is_candidate(i)) continue;
     Slope slope = gradient_.at(points.x[i], points.y[i]);
     if (std::isnan(slope.x)) {
       slope = {0, 0};

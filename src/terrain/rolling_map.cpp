@@ -38,7 +38,6 @@ void RollingMap::clear() {
   cloud_.clear();
   beams_.clear();
   origins_.clear();
-  moved_.clear();
   prune_end_ = 0;
   passing_.clear();
   next_passing_ = 0;
@@ -255,9 +254,7 @@ void RollingMap::fit_reach() {
 
 void RollingMap::remove_moved() {
   for (const VoxelKey& key : moved_) {
-    const MapVoxel* const voxel = voxels_.find(key);
-    if (voxel == nullptr || voxel->misses < kMostMisses) continue;
-    voxels_.erase(static_cast<std::size_t>(voxel - voxels_.begin()), sweep_);
+    voxels_.erase(static_cast<std::size_t>(voxels_.find(key) - voxels_.begin()), sweep_);
   }
   moved_.clear();
 }

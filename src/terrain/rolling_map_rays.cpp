@@ -59,10 +59,9 @@ void RollingMap::trace_ray(const Eigen::Vector3f& from, const Eigen::Vector3f& b
     const float distance = aside.norm();
     if (distance < grass_radius && aside.z() > 0) voxel->beams.passed += 2 * kRayStride;
     const bool is_clear = static_cast<float>(step) * voxel_size < end;
-    if (distance < miss_radius && is_clear && voxel->last_sweep != sweep_) {
-      voxel->misses = std::min<std::uint8_t>(voxel->misses + 1, kMostMisses);
-      if (voxel->misses == kMostMisses) moved_.push_back(key);
-    }
+    const bool is_miss = distance < miss_radius && is_clear && voxel->last_sweep != sweep_;
+    if (!is_miss || voxel->misses == kMostMisses) return;
+    if (++voxel->misses == kMostMisses) moved_.push_back(key);
   });
 }
 

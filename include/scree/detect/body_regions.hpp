@@ -43,6 +43,7 @@ private:
   static constexpr State unseen = 0, clear = 1, hanging = 2, loose = 3, firm = 4;
   enum class Side : std::uint8_t { above, below };
 
+  static bool is_on(Side side, float height) { return (height > 0) == (side == Side::above); }
   void mark(const CandidatePoints& bodies, Side side, const GroundSurface& surface,
             const BeamGrid& solidity);
   void grow(bool diagonally, float share);

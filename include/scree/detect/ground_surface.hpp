@@ -20,6 +20,14 @@ struct GroundSurfaceSettings {
   GroundFinderSettings finder;
 };
 
+/// A raster of a surface, in numbers that a loop can keep in registers.
+struct LevelRaster {
+  const float* heights;        ///< z in the middle of each cell, metres
+  std::int32_t columns, rows;  ///< at least two of each
+  float low_x, low_y;          ///< its corner, metres
+  float inverse;               ///< cells a metre
+};
+
 /// The surface that the robot could drive on, under rocks and over holes: GroundFinder's, on a
 /// raster of the heights of points. The paper has no such stage: its heights are above the
 /// surroundings of a cluster, which tilts on slopes and between two tall rocks.
@@ -30,8 +38,8 @@ public:
 
   /// @pre finite points, no more than max_points of them
   void build(PointView points);
-  /// Builds a surface that is right to some centimetres, from cells twice as wide, in a quarter of
-  /// the time. Of it only heights are known; the raster is that of build_below(). @pre as build()
+  /// Builds a surface that is right to some centimetres, from cells twice as wide: a quarter as
+  /// many. Of it only heights are known; the raster is that of build_below(). @pre as build()
   void build_roughly(PointView points);
   /// Builds the surface of the same points. In loose cells the height is what was seen lowest
   /// instead of the median: below grass the ground goes on.
@@ -107,13 +115,8 @@ private:
   void fill_raster(PointView points);
   void find_ground();
   void halve();
-  /// The raster of the last surface.
-  struct Levels {
-    const float* heights;  ///< in the middle of each cell
-    std::size_t columns, rows;
-    float inverse;  ///< cells a metre
-  };
-  Levels levels() const;
+  GroundRaster rough_raster() const { return {(columns_ + 1) / 2, (rows_ + 1) / 2, 2 * cell_}; }
+  LevelRaster levels_of(const GroundFinder& finder, const GroundRaster& raster) const;
 
   GroundSurfaceSettings settings_;
   float cell_ = 1, inverse_ = 1, low_x_ = 0, low_y_ = 0;
@@ -127,7 +130,7 @@ private:
   // The same from cells twice as wide.
   FixedVector<float> rough_seen_;
   GroundFinder rough_finder_;
-  bool is_rough_ = false;
+  LevelRaster levels_{};  // of the last surface
 };
 
 inline std::size_t GroundSurface::cell_at(float x, float y) const {
@@ -149,25 +152,20 @@ void GroundSurface::for_each_height(PointView points, Visit&& visit) const {
   }
 }
 
-inline GroundSurface::Levels GroundSurface::levels() const {
-  if (!is_rough_) return {finder_.levels(), columns_, rows_, inverse_};
-  return {rough_finder_.levels(), (columns_ + 1) / 2, (rows_ + 1) / 2, inverse_ / 2};
-}
-
 inline float GroundSurface::height(float x, float y) const {
-  const auto split = [](float value, std::size_t count, float& share) {
+  const auto split = [](float value, std::int32_t count, float& share) {
     const float inside = std::clamp(value - 0.5F, 0.0F, static_cast<float>(count) - 1.001F);
     const auto index = static_cast<std::int32_t>(inside);
     share = inside - static_cast<float>(index);
-    return static_cast<std::size_t>(index);
+    return std::ptrdiff_t{index};
   };
-  const Levels raster = levels();
   float u = 0, v = 0;
-  const std::size_t column = split((x - low_x_) * raster.inverse, raster.columns, u);
-  const std::size_t row = split((y - low_y_) * raster.inverse, raster.rows, v);
-  const float* const at = raster.heights + row * raster.columns + column;
+  const std::ptrdiff_t column = split((x - low_x_) * levels_.inverse, levels_.columns, u);
+  const std::ptrdiff_t row = split((y - low_y_) * levels_.inverse, levels_.rows, v);
+  const float* const at = levels_.heights + row * levels_.columns + column;
   const float near = at[0] + u * (at[1] - at[0]);
-  const float far = at[raster.columns] + u * (at[raster.columns + 1] - at[raster.columns]);
+  const float* const above = at + levels_.columns;
+  const float far = above[0] + u * (above[1] - above[0]);
   return near + v * (far - near);
 }
 

@@ -48,6 +48,7 @@ public:
 private:
   void build_ground(const PointCloud& points, const SeenCloud& cloud);
   void mark_points_off_ground(const PointCloud& points);
+  bool is_candidate(std::size_t i) const { return roles_[i] == GradientRaster::Role::asks; }
   void thin_candidates(StageCounts& counts);
   void gather_candidates(const PointCloud& points, StageCounts& counts);
   void cluster(StageCounts& counts);
@@ -66,8 +67,7 @@ private:
   GroundSurface surface_;
   BeamGrid beam_grid_;
   FixedVector<float> height_;                // above the surface, of each point
-  FixedVector<std::uint8_t> is_off_ground_;  // for each of them
-  FixedVector<GradientRaster::Role> roles_;  // for each of them
+  FixedVector<GradientRaster::Role> roles_;  // of each of them; candidates ask
   CandidatePoints candidates_, kept_;
   EuclideanClusters euclidean_;
   PointCloud split_;  // for Euclidean clustering

@@ -115,7 +115,7 @@ private:
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
   Eigen::Vector3f robot_ = Eigen::Vector3f::Zero();  // from the origin, after the last sweep
   VoxelHashMap voxels_;
-  FixedVector<VoxelKey> moved_;  // within the sweep, what stood there
+  FixedVector<VoxelKey> moved_;  // within add(): what beams have gone through often enough
   std::size_t prune_end_ = 0;    // of the voxels that this round has not looked at
   std::size_t prune_step_ = 0;   // voxels that it looks at in a sweep
   FreeSpace free_space_;

@@ -3,7 +3,9 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
+#include "scree/core/floor_to_cell.hpp"
 #include "scree/terrain/voxel_hash_map.hpp"
 
 namespace scree {
