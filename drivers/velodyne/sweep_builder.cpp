@@ -40,7 +40,6 @@ bool SweepBuilder::passes_cut(float azimuth, std::int64_t shot_ns) {
 }
 
 void SweepBuilder::add(const Shots& shots, std::int64_t device_ns, std::int64_t to_host_ns) {
-  to_host_ns_ = to_host_ns;
   const bool dual = shots.mode == ReturnMode::dual;
   bool counted = false;
   for (std::size_t i = 0; i < kShots; ++i) {
@@ -62,6 +61,7 @@ void SweepBuilder::add(const Shots& shots, std::int64_t device_ns, std::int64_t 
       hand_out_part();
     }
     last_shot_ns_ = shot_ns;
+    to_host_ns_ = to_host_ns;
     const float range = shots.range[shot], reflectivity = shots.reflectivity[shot];
     const Eigen::Vector3f at(shots.x[shot], shots.y[shot], shots.z[shot]);
     const auto since_begin_ns = static_cast<std::int32_t>(shot_ns - begin_ns_);

@@ -207,7 +207,7 @@ class FaultsTest(LiveDaemonTest):
         self.assertEqual(wrong, [])
         self.assertGreaterEqual(len(rows), len(groups) - 4, "the drive ended before: make it longer")
         # Of whole drives through this scene it is 0.97; a second after a fault the map is young.
-        self.assertGreater(f1, 0.75)
+        self.assertGreater(f1, 0.8)
         self.daemon.terminate()
         self.assertEqual(self.daemon.wait(timeout=PATIENCE), 0)
 

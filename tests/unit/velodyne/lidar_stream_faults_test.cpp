@@ -168,6 +168,23 @@ TEST(LidarStreamFaults, ARestartBeginsANewSweep) {
   }
 }
 
+TEST(LidarStreamFaults, ATurnThatARestartBreaksOffKeepsItsTime) {
+  for (const std::int64_t ahead : {1'234 * kSecond, -1'234 * kSecond, 5 * kSecond}) {
+    TurningSensor sensor;
+    sensor.send_for(1.03);
+    const std::size_t before = sensor.seen.size();
+    const std::int64_t silent_ns = kEpoch + sensor.elapsed_ns();
+    for (int i = 0; i < 500; ++i) sensor.skip();
+    sensor.stamp_at_start_ns += ahead;
+    sensor.send_for(0.5);
+    ASSERT_GT(sensor.seen.size(), before);
+    EXPECT_NEAR(static_cast<double>(sensor.seen[before].end_ns - silent_ns), 0, 1e6);
+    for (std::size_t i = 1; i < sensor.seen.size(); ++i) {
+      EXPECT_GE(sensor.seen[i].end_ns, sensor.seen[i - 1].end_ns);
+    }
+  }
+}
+
 TEST(LidarStreamFaults, AShortCapturePlayedInALoopKeepsItsSweeps) {
   TurningSensor sensor;
   for (int loop = 0; loop < 10; ++loop) {

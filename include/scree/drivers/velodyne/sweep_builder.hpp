@@ -58,9 +58,9 @@ private:
   Sweep so_far_;                 ///< a copy, where a turn has parts
   std::int64_t begin_ns_ = 0;    ///< device time of its first shot
   std::int64_t last_shot_ns_ = 0, last_return_ns_ = 0, last_cut_ns_ = 0;
-  std::int64_t to_host_ns_ = 0;
-  std::uint64_t turn_ = 0;  ///< the one under way
-  float behind_cut_ = 0;    ///< how far the last shot lay behind the cut; hundredths of a degree
+  std::int64_t to_host_ns_ = 0;  ///< at the last shot: the clock may have started over since
+  std::uint64_t turn_ = 0;       ///< the one under way
+  float behind_cut_ = 0;  ///< how far the last shot lay behind the cut; hundredths of a degree
   bool open_ = false, was_cut_ = false;
   bool started_over_ = false;
   bool begins_at_cut_ = false, ends_at_cut_ = false;
