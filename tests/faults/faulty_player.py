@@ -8,26 +8,40 @@ import threading
 import time
 
 from live_sensors import Player
+from pcap_file import pcap_records
 
 DATA_PACKET = 1206
 TIMESTAMP = 1200  # where a data packet has its time stamp, microseconds past the hour
+HOUR_US = 3_600_000_000
+
+
+def stamp_of(packet):
+    return struct.unpack_from("<I", packet, TIMESTAMP)[0]
+
+
+def first_stamp(capture):
+    payloads = (frame[42:] for _, frame in pcap_records(capture))
+    return next(stamp_of(data) for data in payloads if len(data) == DATA_PACKET)
 
 
 class FaultyPlayer(Player):
-    def __init__(self, *arguments, **options):
+    """`full_hour`: how many seconds after its start the lidar's stamps begin anew."""
+
+    def __init__(self, capture, port, position_port, mti, full_hour):
         self.random = random.Random(45)
         self.loss = self.disorder = self.doubles = 0  # shares of the lidar's packets
         self.lidar_cut = self.imu_cut = self.lidar_is_garbage = self.imu_is_garbage = False
-        self.stamp_shift_us = 0
+        first = first_stamp(os.path.join(capture, "lidar.pcap"))
+        self.stamp_shift_us = HOUR_US - round(full_hour * 1e6) - first
         self.held = None  # packets that a network keeps back
         self.overtaken = []  # packets on a longer way, and how many are still to overtake each
-        super().__init__(*arguments, **options)
+        super().__init__(capture, port, position_port, mti)
 
     def send_lidar(self, data, to):
         if self.lidar_cut or self.random.random() < self.loss:
             return
-        if len(data) == DATA_PACKET and self.stamp_shift_us:
-            stamp = (struct.unpack_from("<I", data, TIMESTAMP)[0] + self.stamp_shift_us) % 3_600_000_000
+        if len(data) == DATA_PACKET:
+            stamp = (stamp_of(data) + self.stamp_shift_us) % HOUR_US
             data = data[:TIMESTAMP] + struct.pack("<I", stamp) + data[TIMESTAMP + 4 :]
         if self.lidar_is_garbage:
             data = self.random.randbytes(len(data))

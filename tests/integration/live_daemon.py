@@ -46,12 +46,15 @@ class LiveDaemonTest(ProgramTest):
 
     def start_daemon(self):
         self.daemon = self.start(self.screed, "--config", self.config)
-        self.log = Lines(self.daemon.stderr)
+        self.log = Lines(self.read_log())
         self.log.first(lambda line: "publishing on" in line)
         watch = [self.scree, "watch", "--url", self.url]
         self.health = Lines(self.start(*watch).stdout)
         self.lists = Lines(self.start(*watch, "--json").stdout)
         self.mti.plug_in()
+
+    def read_log(self):
+        return self.daemon.stderr
 
     def say(self, words, since=0):
         """Where health first says so."""
