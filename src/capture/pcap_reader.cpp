@@ -81,11 +81,11 @@ bool PcapReader::next(PcapRecord& record) {
     }
     return false;
   }
-  // With nanosecond precision tv_usec holds nanoseconds. A garbled record may hold any number; so
-  // many seconds fit in 64 bits as nanoseconds.
-  constexpr std::int64_t kMostSeconds = 9'000'000'000;
-  const std::int64_t seconds = header->ts.tv_sec, nanoseconds = header->ts.tv_usec;
-  if (seconds < 0 || seconds > kMostSeconds || nanoseconds < 0 || nanoseconds >= kSecond) {
+  // The file's 32 bits have no sign (draft-ietf-opsawg-pcap, section 5); libpcap gives them one,
+  // which would be before 1970 from 2038 on. With nanosecond precision tv_usec holds nanoseconds.
+  const std::int64_t seconds = static_cast<std::uint32_t>(header->ts.tv_sec);
+  const std::int64_t nanoseconds = header->ts.tv_usec;
+  if (nanoseconds < 0 || nanoseconds >= kSecond) {
     broken_off_ = fmt::format("{}: breaks off: a record has an impossible time", name_);
     return false;
   }

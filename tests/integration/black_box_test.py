@@ -81,11 +81,15 @@ class BlackBoxTest(LiveDaemonTest):
         self.wait_for_lists(20)
         marked = self.done(self.scree, "mark", "--config", self.config).stdout.strip()
         # Its packets decode as a capture's: a turn has 75 of them.
-        log = self.path("packets.lcm")
-        os.rename(marked, log)
-        info = json.loads(self.done(self.scree, "info", log, "--json", "--config", self.config).stdout)
+        info = json.loads(self.done(self.scree, "info", marked, "--json", "--config", self.config).stdout)
         self.assertGreater(info["packets"], 1000)
         self.assertEqual(info["refused"], {})
+        again = self.path("again.jsonl")
+        self.done(self.scree, "detect", marked, "--out", again, "--config", self.config)
+        with open(again) as file:
+            lists = [json.loads(line) for line in file]
+        self.assertGreater(len(lists), 10)
+        self.assertTrue(any(it["obstacles"] for it in lists))
 
     def test_metrics_say_what_health_says(self):
         self.start_all()

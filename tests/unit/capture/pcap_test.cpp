@@ -8,6 +8,7 @@
 #include "scree/capture/capture.hpp"
 #include "scree/capture/pcap_reader.hpp"
 #include "scree/capture/pcap_writer.hpp"
+#include "scree/core/nanoseconds.hpp"
 #include "unit/temporary_folder.hpp"
 
 namespace scree {
@@ -39,13 +40,14 @@ Read read_all(const std::filesystem::path& file) {
   return read;
 }
 
-void write_packets(const std::filesystem::path& file, int count) {
+void write_packets(const std::filesystem::path& file, int count,
+                   std::int64_t begin_ns = 1'598'612'523'000'000'001) {
   auto writer = PcapWriter::create_ethernet(file);
   ASSERT_TRUE(writer) << writer.error().message;
   for (int i = 0; i < count; ++i) {
     const std::vector<std::uint8_t> payload(static_cast<std::size_t>(1206 + i),
                                             static_cast<std::uint8_t>(i));
-    writer->write(Datagram{1'598'612'523'000'000'001 + i, 0xC0A801C9, 2368, 2368, payload});
+    writer->write(Datagram{begin_ns + i, 0xC0A801C9, 2368, 2368, payload});
   }
   ASSERT_TRUE(writer->close());
 }
@@ -59,6 +61,16 @@ TEST(Pcap, WhatIsWrittenReadsBackToTheNanosecond) {
   ASSERT_EQ(read.payloads.size(), 5U);
   EXPECT_EQ(read.arrival_ns[4], 1'598'612'523'000'000'005);
   EXPECT_EQ(read.payloads[3], std::vector<std::uint8_t>(1209, 3));
+}
+
+TEST(Pcap, TimesAfter2038AreNotThoseBefore1970) {
+  const TemporaryFolder folder;
+  for (const std::int64_t seconds : {0x7FFFFFFFLL, 0x80000000LL, 0xFFFFFFFFLL}) {
+    write_packets(folder / "lidar.pcap", 2, seconds * kSecond);
+    const Read read = read_all(folder / "lidar.pcap");
+    EXPECT_EQ(read.broken_off, "");
+    EXPECT_EQ(read.arrival_ns, (std::vector{seconds * kSecond, seconds * kSecond + 1}));
+  }
 }
 
 std::uint32_t sum_of_words(const std::vector<std::uint8_t>& bytes, std::size_t begin,
