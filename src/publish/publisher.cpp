@@ -1,6 +1,7 @@
 #include "scree/publish/publisher.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "scree/publish/messages.hpp"
 #include "scree/publish/multicast.hpp"
@@ -41,9 +42,7 @@ Result<Publisher> Publisher::open(const std::string& lcm_url) {
   if (const auto routed = check_multicast(lcm_url); !routed) {
     return tl::make_unexpected(routed.error());
   }
-  lcm_t* lcm = lcm_create(lcm_url.c_str());
-  if (lcm == nullptr) return fail("LCM cannot open " + lcm_url);
-  return Publisher(lcm);
+  return open_lcm(lcm_url).map([](LcmHandle lcm) { return Publisher(std::move(lcm)); });
 }
 
 bool Publisher::send(const EncodedMessage& message) {

@@ -34,8 +34,11 @@ Result<std::unique_ptr<Subscriber>> Subscriber::open(const std::string& lcm_url,
     auto socket = listen_to_group(lcm_url);
     if (!socket) return tl::make_unexpected(socket.error());
     subscriber->socket_ = std::move(*socket);
-  } else if (!subscriber->subscribe(lcm_url)) {
-    return fail("LCM cannot open " + lcm_url + ": is there a server that answers?");
+  } else {
+    auto lcm = open_lcm(lcm_url);
+    if (!lcm) return tl::make_unexpected(lcm.error());
+    subscriber->lcm_ = std::move(*lcm);
+    if (!subscriber->subscribe()) return fail("LCM cannot subscribe at " + lcm_url);
   }
   return subscriber;
 }
@@ -49,9 +52,8 @@ Subscriber::~Subscriber() = default;
 
 /// LCM's C interface is used here: lcm-cpp calls subscriptions through a pointer to a member, which
 /// trips the undefined-behaviour sanitizer.
-bool Subscriber::subscribe(const std::string& lcm_url) {
-  lcm_.reset(lcm_create(lcm_url.c_str()));
-  if (!lcm_ || !can_wait_for(lcm_.get())) return false;
+bool Subscriber::subscribe() {
+  if (!can_wait_for(lcm_.get())) return false;
   const auto on_message = [](const lcm_recv_buf_t* buffer, const char* channel, void* subscriber) {
     const auto* data = static_cast<const std::uint8_t*>(buffer->data);
     static_cast<Subscriber*>(subscriber)->decoder_.take(channel, {data, buffer->data_size});

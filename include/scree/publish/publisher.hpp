@@ -1,20 +1,19 @@
 #pragma once
 
-#include <lcm/lcm.h>
-
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <scree/grid_t.hpp>
 #include <scree/health_t.hpp>
 #include <scree/obstacle_list_t.hpp>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "scree/core/obstacle.hpp"
 #include "scree/core/obstacle_grid.hpp"
 #include "scree/core/result.hpp"
+#include "scree/publish/lcm_handle.hpp"
 
 namespace scree {
 
@@ -49,7 +48,8 @@ private:
 /// Sends messages on LCM. One thread may use it.
 class Publisher {
 public:
-  /// Opens an LCM provider; the error says what to do where multicast has no route.
+  /// Opens an LCM provider as open_lcm() does; the error says what to do where multicast has no
+  /// route.
   static Result<Publisher> open(const std::string& lcm_url);
 
   /// False when LCM did not take the message. It may block: as long as the network's queue is full,
@@ -57,12 +57,9 @@ public:
   bool send(const EncodedMessage& message);
 
 private:
-  struct Destroy {
-    void operator()(lcm_t* lcm) const { lcm_destroy(lcm); }
-  };
-  explicit Publisher(lcm_t* lcm) : lcm_(lcm) {}
+  explicit Publisher(LcmHandle lcm) : lcm_(std::move(lcm)) {}
 
-  std::unique_ptr<lcm_t, Destroy> lcm_;
+  LcmHandle lcm_;
 };
 
 }  // namespace scree

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <lcm/lcm.h>
-
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -9,6 +7,7 @@
 
 #include "scree/core/descriptor.hpp"
 #include "scree/core/result.hpp"
+#include "scree/publish/lcm_handle.hpp"
 #include "scree/publish/message_decoder.hpp"
 
 namespace scree {
@@ -39,15 +38,12 @@ public:
   std::uint64_t refused() const;
 
 private:
-  struct Destroy {
-    void operator()(lcm_t* lcm) const { lcm_destroy(lcm); }
-  };
   Subscriber(OnList on_list, OnHealth on_health, OnGrid on_grid);
-  bool subscribe(const std::string& lcm_url);
+  bool subscribe();
   bool handle_datagrams(int milliseconds);
 
-  Descriptor socket_;                    // of the multicast group, or ...
-  std::unique_ptr<lcm_t, Destroy> lcm_;  // ... any other provider
+  Descriptor socket_;  // of the multicast group, or ...
+  LcmHandle lcm_;      // ... any other provider
   std::unique_ptr<LcmDatagrams> datagrams_;
   std::vector<std::uint8_t> buffer_;
   MessageDecoder decoder_;

@@ -10,7 +10,7 @@
 #include "scree/clock/clocks.hpp"
 #include "scree/core/nanoseconds.hpp"
 #include "scree/publish/subscriber.hpp"
-#include "unit/app/deaf_server.hpp"
+#include "unit/deaf_server.hpp"
 #include "unit/free_port.hpp"
 
 namespace scree {

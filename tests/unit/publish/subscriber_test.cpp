@@ -13,6 +13,7 @@
 #include "publish/lcm_datagrams.hpp"
 #include "publish/message_bounds.hpp"
 #include "scree/publish/publisher.hpp"
+#include "unit/deaf_server.hpp"
 #include "unit/free_port.hpp"
 #include "unit/recordings.hpp"
 #include "unit/temporary_folder.hpp"
@@ -221,6 +222,17 @@ TEST(Subscriber, AServerThatDoesNotAnswerIsOneSentence) {
       "tcpq://127.0.0.1:1", [](const obstacle_list_t&) {}, [](const health_t&) {});
   ASSERT_FALSE(opened);
   EXPECT_THAT(opened.error().message, HasSubstr("tcpq://127.0.0.1:1"));
+}
+
+TEST(Subscriber, AServerThatTakesTheConnectionAndIsSilentIsOneSentence) {
+  const DeafServer server(false);
+  const auto subscriber = Subscriber::open(
+      server.url(), [](const obstacle_list_t&) {}, [](const health_t&) {});
+  ASSERT_FALSE(subscriber);
+  EXPECT_THAT(subscriber.error().message, HasSubstr(server.url()));
+  const auto publisher = Publisher::open(server.url());
+  ASSERT_FALSE(publisher);
+  EXPECT_THAT(publisher.error().message, HasSubstr("is there a server that answers?"));
 }
 
 }  // namespace

@@ -17,22 +17,24 @@ namespace scree {
 /// lcm_tcpq.c: both sides begin with a magic number and the version of the protocol).
 class DeafServer {
 public:
-  DeafServer() {
+  explicit DeafServer(bool greets = true) {
     sockaddr_in here{};
     here.sin_family = AF_INET;
     here.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     socklen_t size = sizeof here;
     EXPECT_EQ(bind(listener_.get(), reinterpret_cast<sockaddr*>(&here), size), 0);
-    EXPECT_EQ(listen(listener_.get(), 1), 0);
+    EXPECT_EQ(listen(listener_.get(), 2), 0);
     getsockname(listener_.get(), reinterpret_cast<sockaddr*>(&here), &size);
     url_ = "tcpq://127.0.0.1:" + std::to_string(ntohs(here.sin_port));
-    thread_ = std::thread([this] { take_client(); });
+    if (greets) thread_ = std::thread([this] { greet_client(); });
   }
-  ~DeafServer() { thread_.join(); }
+  ~DeafServer() {
+    if (thread_.joinable()) thread_.join();
+  }
   const std::string& url() const { return url_; }
 
 private:
-  void take_client() {
+  void greet_client() {
     client_ = Descriptor(accept(listener_.get(), nullptr, nullptr));
     std::array<std::uint32_t, 2> hello{};
     recv(client_.get(), hello.data(), sizeof hello, MSG_WAITALL);
