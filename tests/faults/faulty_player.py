@@ -25,17 +25,20 @@ def first_stamp(capture):
 
 
 class FaultyPlayer(Player):
-    """`full_hour`: how many seconds after its start the lidar's stamps begin anew."""
+    """`full_hour`: how many seconds after its start the lidar's stamps pass the full hour; without
+    it they are the capture's."""
 
-    def __init__(self, capture, port, position_port, mti, full_hour):
+    def __init__(self, capture, port, position_port, mti, full_hour=None, loop=False):
         self.random = random.Random(45)
         self.loss = self.disorder = self.doubles = 0  # shares of the lidar's packets
         self.lidar_cut = self.imu_cut = self.lidar_is_garbage = self.imu_is_garbage = False
-        first = first_stamp(os.path.join(capture, "lidar.pcap"))
-        self.stamp_shift_us = HOUR_US - round(full_hour * 1e6) - first
+        self.stamp_shift_us = 0
+        if full_hour is not None:
+            first = first_stamp(os.path.join(capture, "lidar.pcap"))
+            self.stamp_shift_us = HOUR_US - round(full_hour * 1e6) - first
         self.held = None  # packets that a network keeps back
         self.overtaken = []  # packets on a longer way, and how many are still to overtake each
-        super().__init__(capture, port, position_port, mti)
+        super().__init__(capture, port, position_port, mti, loop=loop)
 
     def send_lidar(self, data, to):
         if self.lidar_cut or self.random.random() < self.loss:
