@@ -50,21 +50,27 @@ std::optional<GroundPlane> fit_ground_around(const PointCloud& points) {
   constexpr double kLastScale = 0.08;   // ... and the last ones
   constexpr double kNarrower = 0.7;
   constexpr int kRounds = 12;
+  // Few points lie deeper than this below the ground. Where many do, it is a plane through grass.
+  constexpr double kDeep = 0.16, kMostDeep = 0.1;  // metres; share of the points
   Plane plane = Plane::Zero();
   double scale = kFirstScale;
+  std::size_t count = 0, deep = 0;
   for (int round = 0; round < kRounds; ++round) {
     PlaneFit fit;
-    std::size_t count = 0;
+    count = deep = 0;
     for (std::size_t i = 0; i < points.size(); i += kEvery) {
       const Eigen::Vector3d point(points.x[i], points.y[i], points.z[i]);
       if (point.z() > -kLeastBelow || point.head<2>().norm() > kReach) continue;
-      fit.add(point, round == 0 ? 1 : cauchy_weight(distance(plane, point), scale));
+      const double above = distance(plane, point);
+      fit.add(point, round == 0 ? 1 : cauchy_weight(above, scale));
+      deep += above < -kDeep ? 1 : 0;
       ++count;
     }
     if (count < kLeast) return std::nullopt;
     plane = fit.plane();
     scale = std::max(kLastScale, kNarrower * scale);
   }
+  if (static_cast<double>(deep) > kMostDeep * static_cast<double>(count)) return std::nullopt;
   return seen_from_origin(plane);
 }
 

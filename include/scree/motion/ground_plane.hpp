@@ -14,7 +14,8 @@ struct GroundPlane {
 };
 
 /// The plane that most points around a lidar lie on, and the height of their frame's origin.
-/// Nothing where too little lies below the lidar.
+/// Nothing where too little lies below the lidar, or where many points lie well below the plane: it
+/// is one through grass then.
 /// @param points in the lidar's frame, which stands upright to half a right angle
 std::optional<GroundPlane> fit_ground_around(const PointCloud& points);
 

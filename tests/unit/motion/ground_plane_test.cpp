@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 #include "scree/core/pose.hpp"
 
@@ -29,6 +30,21 @@ TEST(GroundPlaneTest, IsThatOfTheGroundBesideARock) {
   EXPECT_NEAR(plane->height, 0.9, 0.02);
   const Eigen::Vector3d up = from_roll_pitch_yaw(0, radians(8), 0) * plane->normal;
   EXPECT_NEAR(degrees(std::acos(up.z())), 0, 0.5);
+}
+
+/// Blades of grass end beams at any height between the ground and theirs; most near their tops.
+TEST(GroundPlaneTest, IsNoneThroughTallGrass) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> share(0, 1);
+  for (const float blades : {0.05F, 0.8F}) {
+    PointCloud points(5000);
+    for (float x = -6; x <= 6; x += 0.2F) {
+      for (float y = -6; y <= 6; y += 0.2F) {
+        points.push_back(x, y, -1.1F + blades * std::sqrt(share(random)), 0);
+      }
+    }
+    EXPECT_EQ(fit_ground_around(points).has_value(), blades < 0.1F);
+  }
 }
 
 TEST(GroundPlaneTest, IsNoneWhereNothingLiesBelow) {
