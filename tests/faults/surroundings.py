@@ -17,18 +17,23 @@ def run(*command):
     subprocess.run(command, check=True, capture_output=True)
 
 
+PREPARE = (
+    "mount --make-rprivate /",
+    "ip link set lo up",
+    f"ip route add {GROUPS} dev lo",
+)
+
+
 def take_namespaces():
     """Routes and mounts of this program's own from now on, for its later threads and programs, too;
     False where it may not."""
-    libc = ctypes.CDLL(None, use_errno=True)
-    if libc.unshare(NEW_MOUNTS | NEW_NETWORK) != 0:
+    tried = " && ".join((*PREPARE, "mount -t tmpfs tmpfs /mnt"))
+    if subprocess.run(["unshare", "-mn", "sh", "-c", tried], capture_output=True).returncode != 0:
         return False
-    try:
-        run("mount", "--make-rprivate", "/")
-        run("ip", "link", "set", "lo", "up")
-        run("ip", "route", "add", GROUPS, "dev", "lo")
-    except (OSError, subprocess.CalledProcessError):
+    if ctypes.CDLL(None).unshare(NEW_MOUNTS | NEW_NETWORK) != 0:
         return False
+    for command in PREPARE:
+        run(*command.split())
     return True
 
 
