@@ -9,19 +9,15 @@ import subprocess
 import threading
 import time
 
+from programs import fill
+
 NEW_MOUNTS, NEW_NETWORK = 0x00020000, 0x40000000  # sched.h: CLONE_NEWNS, CLONE_NEWNET
-GROUPS = "239.0.0.0/8"
+ADD_ROUTE, REMOVE_ROUTE = (f"ip route {verb} 239.0.0.0/8 dev lo" for verb in ("add", "del"))
+PREPARE = ("mount --make-rprivate /", "ip link set lo up", ADD_ROUTE)
 
 
-def run(*command):
-    subprocess.run(command, check=True, capture_output=True)
-
-
-PREPARE = (
-    "mount --make-rprivate /",
-    "ip link set lo up",
-    f"ip route add {GROUPS} dev lo",
-)
+def run(command):
+    subprocess.run(command.split(), check=True, capture_output=True)
 
 
 def take_namespaces():
@@ -33,7 +29,7 @@ def take_namespaces():
     if ctypes.CDLL(None).unshare(NEW_MOUNTS | NEW_NETWORK) != 0:
         return False
     for command in PREPARE:
-        run(*command.split())
+        run(command)
     return True
 
 
@@ -41,10 +37,10 @@ class Route:
     """To LCM's multicast groups."""
 
     def begin(self):
-        run("ip", "route", "del", GROUPS)
+        run(REMOVE_ROUTE)
 
     def end(self):
-        run("ip", "route", "add", GROUPS, "dev", "lo")
+        run(ADD_ROUTE)
 
 
 class SmallDisk:
@@ -52,7 +48,7 @@ class SmallDisk:
 
     def __init__(self, folder):
         os.makedirs(folder)
-        run("mount", "-t", "tmpfs", "-o", "size=32m", "tmpfs", folder)
+        run(f"mount -t tmpfs -o size=32m tmpfs {folder}")
         self.folder, self.file = folder, os.path.join(folder, "full")
 
     def begin(self):
@@ -67,7 +63,7 @@ class SmallDisk:
         os.remove(self.file)
 
     def unmount(self):
-        run("umount", "--lazy", self.folder)
+        run(f"umount --lazy {self.folder}")
 
 
 class Descriptors:
@@ -120,13 +116,8 @@ class LogReader:
     def begin(self):
         self.cat.send_signal(signal.SIGSTOP)
         pipe = os.open(f"/proc/{self.process}/fd/2", os.O_WRONLY | os.O_NONBLOCK)
-        try:
-            while True:
-                os.write(pipe, b"x" * 4095 + b"\n")
-        except BlockingIOError:
-            pass
-        finally:
-            os.close(pipe)
+        fill(pipe)
+        os.close(pipe)
 
     def end(self):
         self.cat.send_signal(signal.SIGCONT)

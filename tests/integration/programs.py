@@ -34,6 +34,15 @@ def free_port():
         return probe.getsockname()[1]
 
 
+def fill(pipe):
+    """Writes until nothing more goes in, as when nobody reads. `pipe` is a descriptor that does not block."""
+    try:
+        while True:
+            os.write(pipe, b"x" * 4095 + b"\n")
+    except BlockingIOError:
+        pass
+
+
 class ProgramTest(unittest.TestCase):
     """Has a folder of its own, ports and an LCM url that no other test has."""
 

@@ -10,7 +10,7 @@ import time
 
 from live_daemon import Lines, LiveDaemonTest
 from live_sensors import Player
-from programs import PATIENCE, SANITIZED, main
+from programs import PATIENCE, SANITIZED, fill, main
 
 LiveDaemonTest.screed, LiveDaemonTest.scree = sys.argv[1:3]
 
@@ -47,11 +47,7 @@ class SafetyTest(LiveDaemonTest):
         read_end, write_end = os.pipe()
         self.addCleanup(os.close, read_end)
         os.set_blocking(write_end, False)
-        while True:  # until the pipe is full
-            try:
-                os.write(write_end, b"x" * 4096)
-            except BlockingIOError:
-                break
+        fill(write_end)
         os.set_blocking(write_end, True)
         daemon = subprocess.Popen([self.screed, "--config", self.config], stderr=write_end)
         self.addCleanup(daemon.wait)
