@@ -9,48 +9,13 @@
 #include "scree/capture/pcap_reader.hpp"
 #include "scree/capture/pcap_writer.hpp"
 #include "scree/core/nanoseconds.hpp"
+#include "unit/capture/pcap_files.hpp"
 #include "unit/temporary_folder.hpp"
 
 namespace scree {
 namespace {
 
 using ::testing::HasSubstr;
-
-struct Read {
-  std::vector<std::int64_t> arrival_ns;
-  std::vector<std::vector<std::uint8_t>> payloads;
-  FrameCounters frames;
-  std::string broken_off, error;
-};
-
-Read read_all(const std::filesystem::path& file) {
-  Read read;
-  auto reader = PcapReader::open(file);
-  if (!reader) {
-    read.error = reader.error().message;
-    return read;
-  }
-  Datagram datagram;
-  while (reader->next(datagram)) {
-    read.arrival_ns.push_back(datagram.arrival_ns);
-    read.payloads.emplace_back(datagram.payload.begin(), datagram.payload.end());
-  }
-  read.frames = reader->frames();
-  read.broken_off = reader->broken_off();
-  return read;
-}
-
-void write_packets(const std::filesystem::path& file, int count,
-                   std::int64_t begin_ns = 1'598'612'523'000'000'001) {
-  auto writer = PcapWriter::create_ethernet(file);
-  ASSERT_TRUE(writer) << writer.error().message;
-  for (int i = 0; i < count; ++i) {
-    const std::vector<std::uint8_t> payload(static_cast<std::size_t>(1206 + i),
-                                            static_cast<std::uint8_t>(i));
-    writer->write(Datagram{begin_ns + i, 0xC0A801C9, 2368, 2368, payload});
-  }
-  ASSERT_TRUE(writer->close());
-}
 
 TEST(Pcap, WhatIsWrittenReadsBackToTheNanosecond) {
   const TemporaryFolder folder;
@@ -155,12 +120,6 @@ TEST(Pcap, SnapLengthIsCounted) {
   EXPECT_EQ(read.broken_off, "");
 }
 
-void append(std::string& bytes, std::uint64_t value, int size, bool big_endian) {
-  for (int i = 0; i < size; ++i) {
-    bytes.push_back(static_cast<char>(value >> 8 * (big_endian ? size - 1 - i : i)));
-  }
-}
-
 TEST(Pcap, ReadsBothByteOrdersAndPrecisionsAndPcapng) {
   const TemporaryFolder folder;
   write_packets(folder / "whole.pcap", 1);
@@ -201,103 +160,6 @@ TEST(Pcap, ReadsBothByteOrdersAndPrecisionsAndPcapng) {
     const Read read = read_all(folder.write("file.pcapng", bytes));
     ASSERT_EQ(read.arrival_ns.size(), 1U) << read.error << read.broken_off;
     EXPECT_EQ(read.arrival_ns[0], static_cast<std::int64_t>(time));
-  }
-}
-
-/// A pcapng file of little-endian blocks.
-class PcapngText {
-public:
-  PcapngText() {
-    std::string section;
-    append(section, 0x1A2B3C4D, 4, false), append(section, 1, 4, false);
-    append(section, ~std::uint64_t{0}, 8, false);
-    block(0x0A0D0D0A, section);
-  }
-  /// @param resolution as the option if_tsresol says it
-  void interface(int link_type, int snap_length, int resolution) {
-    std::string body;
-    append(body, static_cast<std::uint64_t>(link_type), 4, false);
-    append(body, static_cast<std::uint64_t>(snap_length), 4, false);
-    append(body, 9, 2, false), append(body, 1, 2, false);
-    append(body, static_cast<std::uint64_t>(resolution), 4, false), append(body, 0, 4, false);
-    block(1, body);
-  }
-  void packet(std::uint32_t interface, std::uint64_t time, const std::string& frame) {
-    std::string body;
-    append(body, interface, 4, false);
-    append(body, time >> 32, 4, false), append(body, time & 0xFFFFFFFF, 4, false);
-    append(body, frame.size(), 4, false), append(body, frame.size(), 4, false);
-    body += frame;
-    body.resize((body.size() + 3) / 4 * 4);
-    block(6, body);
-  }
-  void simple_packet(const std::string& frame) {
-    std::string body;
-    append(body, frame.size(), 4, false);
-    body += frame;
-    body.resize((body.size() + 3) / 4 * 4);
-    block(3, body);
-  }
-  void block(std::uint32_t type, const std::string& body) {
-    append(bytes, type, 4, false), append(bytes, body.size() + 12, 4, false);
-    bytes += body;
-    append(bytes, body.size() + 12, 4, false);
-  }
-
-  std::string bytes;
-};
-
-std::string frame_of_a_packet(const TemporaryFolder& folder) {
-  write_packets(folder / "one.pcap", 1);
-  return bytes_of(folder / "one.pcap").substr(24 + 16);
-}
-
-TEST(Pcap, InterfacesOfAPcapngFileMayDiffer) {
-  const TemporaryFolder folder;
-  const std::string ethernet = frame_of_a_packet(folder), ip = ethernet.substr(14);
-  PcapngText file;
-  file.interface(147, 0, 6);  // no network
-  file.interface(1, 65535, 6);
-  file.packet(1, 1'598'612'523'000'001, ethernet);
-  file.interface(101, 262144, 9);  // LINKTYPE_RAW
-  file.packet(2, 1'598'612'523'000'002'003, ip);
-  file.block(0xBAD, "whatever");  // of a kind that is not known
-  file.packet(0, 0, "serial bytes");
-  file.interface(113, 64, 0x80 | 10);  // LINKTYPE_LINUX_SLL, 1024 units a second
-  file.packet(3, 1'598'612'523ULL * 1024 + 512, std::string(14, '\0') + "\x08" + '\0' + ip);
-  file.simple_packet("of the first interface");
-  const Read read = read_all(folder.write("many.pcapng", file.bytes));
-  EXPECT_EQ(read.broken_off, "");
-  EXPECT_THAT(read.arrival_ns,
-              testing::ElementsAre(1'598'612'523'000'001'000, 1'598'612'523'000'002'003,
-                                   1'598'612'523'500'000'000));
-  for (const auto& payload : read.payloads) EXPECT_EQ(payload.size(), 1206U);
-  EXPECT_EQ(read.frames.other, 2U);
-  EXPECT_EQ(PcapReader::open(folder / "many.pcapng")->link_type(), 1);
-}
-
-TEST(Pcap, APcapngFileMayBreakOffAnywhere) {
-  const TemporaryFolder folder;
-  PcapngText file;
-  file.interface(1, 0, 6);
-  file.packet(0, 1, frame_of_a_packet(folder));
-  const std::string whole = file.bytes;
-  for (std::size_t size = 4; size < whole.size(); size += 3) {
-    const Read read = read_all(folder.write("cut.pcapng", whole.substr(0, size)));
-    EXPECT_EQ(read.payloads.size(), 0U) << size;
-  }
-  EXPECT_THAT(read_all(folder.write("cut.pcapng", whole.substr(0, whole.size() - 9))).broken_off,
-              HasSubstr("cut.pcapng: breaks off: a block is cut"));
-  file.packet(7, 1, "of an interface that is not there");
-  EXPECT_THAT(read_all(folder.write("odd.pcapng", file.bytes)).broken_off,
-              HasSubstr("of no interface"));
-  std::mt19937 random(6);
-  for (int round = 0; round < 300; ++round) {
-    std::string bytes = whole;
-    for (int flips = 0; flips < 4; ++flips) {
-      bytes[4 + random() % 90] = static_cast<char>(random());
-    }
-    ASSERT_LE(read_all(folder.write("garbled.pcapng", bytes)).payloads.size(), 1U);
   }
 }
 
