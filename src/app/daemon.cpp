@@ -44,7 +44,7 @@ public:
         sweeps_(most_sweeps(settings), [] { return TimedSweep(); }),
         lists_(kLists, [&] { return TimedObstacleList(max_obstacles(settings)); }),
         lidar_(settings, std::move(ports), lines.pps, sweeps_, keeper_.get()),
-        detector_(std::move(process), sensors, settings.map.wait, sweeps_, lists_),
+        detector_(std::move(process), sensors, settings.motion_wait(), sweeps_, lists_),
         publisher_(
             settings, lines, std::move(publisher), lists_, [this] { return collect_status(); },
             watchdog_, keeper_.get()) {
@@ -79,7 +79,7 @@ public:
 
   void apply(const Settings& settings) override {
     publisher_.set_zone(settings.stop);
-    detector_.set_max_wait(settings.map.wait);
+    detector_.set_max_wait(settings.motion_wait());
   }
 
   std::string status() override { return publisher_.sentence(); }

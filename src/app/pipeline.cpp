@@ -7,6 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "scree/motion/sync_buffer_of.hpp"
+
 namespace scree {
 namespace {
 
@@ -60,7 +62,7 @@ Result<Pipeline> Pipeline::make(const Settings& settings,
 }
 
 Pipeline::Pipeline(const Settings& settings, const Networks& networks)
-    : sensors_(std::make_unique<SyncBuffer>(settings.imu.mount().rotation)),
+    : sensors_(sync_buffer_of(settings)),
       mapper_(std::make_unique<Mapper>(settings)),
       setup_(std::make_unique<SetupProbe>(settings)),
       stand_in_(std::make_unique<StandInMotion>(settings)),

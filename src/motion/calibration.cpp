@@ -110,8 +110,9 @@ double set_value(const Settings& set, Calibrated which) {
     case Calibrated::encoder_y:
       return set.encoder.translation.y();
     case Calibrated::imu_delay:
+      return set.imu.delay;
     case Calibrated::encoder_delay:
-      break;
+      return set.encoder.delay;
   }
   return 0;
 }
@@ -130,6 +131,10 @@ Settings with_calibration(Settings set, const Calibration& found) {
   const auto take = [&](Calibrated which, double& value) {
     if (is_other(which)) value = found[which].value;
   };
+  const auto take_delay = [&](Calibrated which, double& delay) {
+    take(which, delay);
+    delay = std::clamp(delay, -kMostDelay, kMostDelay);
+  };
   // The angles of a rotation belong together.
   const auto take_rotation = [&](const std::array<Calibrated, 3>& angles, Eigen::Vector3d& rpy) {
     const bool is_shown =
@@ -143,8 +148,10 @@ Settings with_calibration(Settings set, const Calibration& found) {
                 set.imu.rpy_deg);
   take(Calibrated::lidar_x, set.lidar.translation.x());
   take(Calibrated::lidar_height, set.lidar.translation.z());
+  take_delay(Calibrated::imu_delay, set.imu.delay);
   take(Calibrated::encoder_scale, set.encoder.scale);
   take(Calibrated::encoder_y, set.encoder.translation.y());
+  take_delay(Calibrated::encoder_delay, set.encoder.delay);
   return set;
 }
 

@@ -184,7 +184,7 @@ void CalibrationEstimator::estimate_imu(const Windows& windows, Values& values) 
     });
     if (std::isnan(delay)) break;
   }
-  at(values, Calibrated::imu_delay) = delay;
+  at(values, Calibrated::imu_delay) = set_.imu.delay + delay;
   const Eigen::Vector3d rpy = roll_pitch_yaw_deg(lidar * rotation);
   at(values, Calibrated::imu_roll) = rpy.x();
   at(values, Calibrated::imu_pitch) = rpy.y();
@@ -247,11 +247,12 @@ void CalibrationEstimator::estimate_wheel(const Windows& windows, Values& values
   const Eigen::VectorXd factors = robust_fit(all.moved.leftCols(columns), all.way);
   at(values, Calibrated::encoder_scale) = set_.encoder.scale / factors(0);
   if (has_turns) at(values, Calibrated::encoder_y) = -factors(1) / factors(0);
-  at(values, Calibrated::encoder_delay) = best_shift([&](double shift) {
-    const Rolled shifted = rolled(windows, lidar, arm, shift);
-    if (shifted.way.size() == 0) return kWorst;
-    return median_size(shifted.way - shifted.moved.leftCols(columns) * factors);
-  });
+  at(values, Calibrated::encoder_delay) =
+      set_.encoder.delay + best_shift([&](double shift) {
+        const Rolled shifted = rolled(windows, lidar, arm, shift);
+        if (shifted.way.size() == 0) return kWorst;
+        return median_size(shifted.way - shifted.moved.leftCols(columns) * factors);
+      });
 }
 
 }  // namespace scree

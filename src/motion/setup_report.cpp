@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "scree/config/settings.hpp"
+
 namespace scree {
 namespace {
 
@@ -39,6 +41,16 @@ std::string scale_text(const SetupFinding& finding) {
   return text + fmt::format(": set {:.3g}", finding.set.x());
 }
 
+std::string delay_text(const char* sensor, const SetupFinding& finding) {
+  const double set = std::round(finding.set.x() * 100) / 100 + 0.0;
+  const std::string text = fmt::format("{}.delay looks {:.2f} s too {}: ", sensor,
+                                       std::abs(finding.off), finding.off > 0 ? "small" : "large");
+  if (std::abs(set) <= kMostDelay) return text + fmt::format("set {:g}", set);
+  return text +
+         fmt::format("more than the key takes; find what holds up the {}",
+                     finding.off > 0 ? fmt::format("{}'s messages", sensor) : "lidar's packets");
+}
+
 }  // namespace
 
 std::string sentence(const SetupFinding& finding) {
@@ -58,6 +70,10 @@ std::string sentence(const SetupFinding& finding) {
       return fmt::format("encoder.translation looks {:.2f} m too far to the {}: set {}",
                          std::abs(finding.off), finding.off > 0 ? "left" : "right",
                          vector_text(finding.set, 100));
+    case SetupFault::imu_delay:
+      return delay_text("imu", finding);
+    case SetupFault::encoder_delay:
+      return delay_text("encoder", finding);
     case SetupFault::lidar_unset:
       return "lidar.translation and lidar.rpy_deg are as delivered: set where the lidar sits";
     case SetupFault::motion_unknown:

@@ -38,6 +38,8 @@ SetupWatch::SetupWatch(const Settings& settings)
       imu_(settings.imu.mount().rotation.toRotationMatrix()),
       encoder_scale_(settings.encoder.scale),
       encoder_place_(settings.encoder.translation),
+      imu_delay_(settings.imu.delay),
+      encoder_delay_(settings.encoder.delay),
       quarter_turns_(all_quarter_turns()) {
   belief(SetupFault::lidar_unset).is_named =
       settings.lidar.translation.isZero() && settings.lidar.rpy_deg.isZero();
@@ -69,6 +71,7 @@ SetupWatch::Seen SetupWatch::seen_in_base(const SetupWindow& window) const {
   Seen seen;
   seen.seconds = window.seconds;
   seen.is_bound = window.is_bound;
+  seen.binds = window.binds;
   seen.turn = lidar_ * window.turn;
   // At a height that is far from the set one the lidar swings as far as it really does.
   Eigen::Vector3d arm = lidar_mount_.translation;
@@ -84,11 +87,13 @@ SetupWatch::Seen SetupWatch::seen_in_base(const SetupWindow& window) const {
   seen.below = in_base(window.below);
   seen.has_imu = window.has_imu;
   seen.imu_turn = imu_ * window.imu_turn;
+  seen.imu_turn_gain = seen.imu_turn - imu_ * window.imu_turn_before;
   seen.imu_up = imu_ * window.imu_up;
   seen.has_force = window.has_force;
   seen.force = imu_ * window.imu_force;
   seen.has_wheel = window.has_wheel;
   seen.wheel = window.wheel;
+  seen.wheel_gain = window.wheel - window.wheel_before;
   return seen;
 }
 
@@ -126,6 +131,8 @@ void SetupWatch::judge() {
   const WheelFit fit = fit_wheel();
   belief(SetupFault::encoder_scale).update(judge_encoder_scale(fit));
   belief(SetupFault::encoder_place).update(judge_encoder_place(fit));
+  belief(SetupFault::imu_delay).update(judge_imu_delay());
+  belief(SetupFault::encoder_delay).update(judge_encoder_delay(fit));
 }
 
 void SetupWatch::update_report() {

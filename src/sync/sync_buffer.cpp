@@ -80,6 +80,7 @@ bool SyncBuffer::put(const EncoderSample& sample) {
 
 bool SyncBuffer::accept(ImuSample sample) {
   if (!is_sound(sample)) return false;
+  sample.t_ns -= delays_.imu_ns;
   if (sample.started_over) imu_restart_ns_ = sample.t_ns;
   if (is_set_back(imu_, sample)) {
     imu_.clear();
@@ -93,8 +94,9 @@ bool SyncBuffer::accept(ImuSample sample) {
   return imu_.push(sample);
 }
 
-bool SyncBuffer::accept(const EncoderSample& sample) {
+bool SyncBuffer::accept(EncoderSample sample) {
   if (!is_sound(sample)) return false;
+  sample.t_ns -= delays_.wheel_ns;
   if (is_set_back(wheel_, sample)) wheel_.clear();
   if (!wheel_.empty() && !can_follow(wheel_.newest(), sample)) return false;
   return wheel_.push(sample);
@@ -125,12 +127,12 @@ void SyncBuffer::gather() {
 }
 
 bool SyncBuffer::covers(std::int64_t t_ns) const {
-  const auto covered = [t_ns](const auto& history) {
+  const auto covered = [t_ns](const auto& history, std::int64_t delay_ns) {
     if (history.empty()) return true;
     const std::int64_t newest_ns = history.newest().t_ns;
-    return newest_ns >= t_ns || newest_ns < t_ns - kSilenceNs;
+    return newest_ns >= t_ns || newest_ns + delay_ns < t_ns - kSilenceNs;
   };
-  return covered(imu_) && covered(wheel_);
+  return covered(imu_, delays_.imu_ns) && covered(wheel_, delays_.wheel_ns);
 }
 
 std::optional<Attitude> SyncBuffer::attitude_at(std::int64_t t_ns) const {

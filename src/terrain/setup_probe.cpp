@@ -5,6 +5,23 @@
 #include "scree/motion/specific_force.hpp"
 
 namespace scree {
+namespace {
+
+std::optional<Eigen::Vector3d> imu_turn(const SyncBuffer& sensors, std::int64_t begin_ns,
+                                        std::int64_t end_ns) {
+  const auto begin = sensors.attitude_at(begin_ns), end = sensors.attitude_at(end_ns);
+  if (!begin || !end) return std::nullopt;
+  return logarithm(begin->rotation.conjugate() * end->rotation);
+}
+
+std::optional<double> wheel_way(const SyncBuffer& sensors, std::int64_t begin_ns,
+                                std::int64_t end_ns) {
+  const auto begin = sensors.wheel_at(begin_ns), end = sensors.wheel_at(end_ns);
+  if (!begin || !end) return std::nullopt;
+  return end->distance - begin->distance;
+}
+
+}  // namespace
 
 SetupProbe::SetupProbe(const Settings& settings)
     : middle_(LidarOdometry::above_middle(settings.lidar.mount())),
@@ -16,7 +33,7 @@ SetupProbe::SetupProbe(const Settings& settings)
 
 void SetupProbe::begin_window() {
   window_ = {};
-  window_.is_bound = window_.has_imu = window_.has_wheel = true;
+  window_.binds = window_.has_imu = window_.has_wheel = true;
   begin_ns_ = odometry_.end_ns();
 }
 
@@ -39,19 +56,27 @@ void SetupProbe::add_step(const SyncBuffer& sensors) {
   window_.seconds += static_cast<double>(end_ns - begin_ns) * 1e-9;
   window_.way += odometry_.step().translation;
   window_.turn += logarithm(odometry_.step().rotation);
-  window_.is_bound = window_.is_bound && odometry_.is_bound();
-  const auto begin = sensors.attitude_at(begin_ns), end = sensors.attitude_at(end_ns);
-  window_.has_imu = window_.has_imu && begin && end;
+  window_.binds = window_.binds && odometry_.is_bound();
+  constexpr auto kBeforeNs = static_cast<std::int64_t>(SetupWindow::kBefore * 1e9);
+  const auto turn = imu_turn(sensors, begin_ns, end_ns);
+  const auto turn_before = imu_turn(sensors, begin_ns - kBeforeNs, end_ns - kBeforeNs);
+  window_.has_imu = window_.has_imu && turn && turn_before;
   if (window_.has_imu) {
-    window_.imu_turn += logarithm(begin->rotation.conjugate() * end->rotation);
+    window_.imu_turn += *turn;
+    window_.imu_turn_before += *turn_before;
   }
-  const auto wheel_begin = sensors.wheel_at(begin_ns), wheel_end = sensors.wheel_at(end_ns);
-  window_.has_wheel = window_.has_wheel && wheel_begin && wheel_end;
-  if (window_.has_wheel) window_.wheel += wheel_end->distance - wheel_begin->distance;
+  const auto way = wheel_way(sensors, begin_ns, end_ns);
+  const auto way_before = wheel_way(sensors, begin_ns - kBeforeNs, end_ns - kBeforeNs);
+  window_.has_wheel = window_.has_wheel && way && way_before;
+  if (window_.has_wheel) {
+    window_.wheel += *way;
+    window_.wheel_before += *way_before;
+  }
 }
 
 void SetupProbe::end_window(const SyncBuffer& sensors) {
-  if (window_.has_imu && !turn_alike(window_.turn, window_.imu_turn)) window_.is_bound = false;
+  window_.is_bound =
+      window_.binds && (!window_.has_imu || turn_alike(window_.turn, window_.imu_turn));
   window_.around = fit_ground_around(odometry_.sweep().points);
   if (window_.is_bound) window_.below = odometry_.ground_below(middle_);
   const auto attitude = sensors.attitude_at(odometry_.end_ns());

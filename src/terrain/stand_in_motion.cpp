@@ -18,7 +18,7 @@ StandInMotion::StandInMotion(const Settings& settings)
     : mount_(settings.lidar.mount()),
       imu_mount_(settings.imu.mount().rotation),
       wheel_place_(settings.encoder.translation),
-      samples_(imu_mount_, kAttitudeWalk) {}
+      samples_(imu_mount_, {}, kAttitudeWalk) {}
 
 /// On the whole the ground around a robot is level, or slopes so that it makes no difference.
 void StandInMotion::begin(const LidarOdometry& odometry) {

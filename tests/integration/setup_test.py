@@ -64,6 +64,15 @@ class SetupTest(ProgramTest):
             said = self.said(capture, self.changed(capture, **keys))
             self.assertTrue(any(re.search(sentence, each) for each in said), (sentence, said))
 
+    def test_messages_that_take_longer_than_set_are_named(self):
+        capture = self.simulated("mixed", "--scene", "mixed", "--seed", "70003")
+        with open(os.path.join(capture, "scree.toml")) as file:
+            robot = file.read()
+        for delay, word in [(0.08, "large"), (-0.08, "small")]:
+            config = self.write("late.toml", robot.replace("[imu]\n", f"[imu]\ndelay = {delay}\n"))
+            [said] = self.said(capture, config)
+            self.assertRegex(said, f"imu.delay looks 0.(0[6-9]|1) s too {word}: set -?0")
+
     def test_detect_says_it_too_and_goes_on(self):
         capture = self.simulated("mixed", "--scene", "mixed", "--seed", "70003")
         config = self.changed(capture, encoder_scale=lambda v: 2 * v)

@@ -48,6 +48,8 @@ void for_every_key(AnySettings& settings, Visit&& visit) {
       "rates of turn a second besides, at high rate, for recordings; 0 for none");
   key("rpy_deg", imu.rpy_deg, "deg", -360, 360, "rotation imu -> base: roll, pitch, yaw");
   key("translation", imu.translation, "m", -100, 100, "imu origin in base: x, y, z");
+  key("delay", imu.delay, "s", -kMostDelay, kMostDelay,
+      "its messages take so much longer to the host than the lidar's: `scree calibrate` finds it");
 
   table = "encoder";
   auto& encoder = settings.encoder;
@@ -72,6 +74,7 @@ void for_every_key(AnySettings& settings, Visit&& visit) {
   key("translation", encoder.translation, "m", -100, 100,
       "where the wheel touches the ground, in base: x, y, z; a wheel beside the middle rolls "
       "farther on the outer side of a turn");
+  key("delay", encoder.delay, "s", -kMostDelay, kMostDelay, "as imu.delay");
   key("max_speed", encoder.max_speed, "m/s", 0.1, 200,
       "readings that ask for a faster wheel are refused, and counted");
   key("max_acceleration", encoder.max_acceleration, "m/s^2", 0.1, 1000,

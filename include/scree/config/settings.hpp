@@ -82,6 +82,9 @@ struct LidarSettings {
   }
 };
 
+/// Seconds that a sensor's messages may take longer to the host than the lidar's.
+inline constexpr double kMostDelay = 0.1;
+
 struct ImuSettings {
   std::string device = "/dev/ttyUSB0";
   int baud = 921600;
@@ -91,6 +94,7 @@ struct ImuSettings {
   int gyro_hr_rate = 0;
   Eigen::Vector3d rpy_deg{0, 0, 0};
   Eigen::Vector3d translation{0, 0, 0};
+  double delay = 0;
 
   /// `imu` in `base`.
   Pose mount() const {
@@ -110,6 +114,7 @@ struct EncoderSettings {
   EncoderKind kind = EncoderKind::counter;
   double scale = 0.000157;
   Eigen::Vector3d translation{0, 0, 0};
+  double delay = 0;
   double max_speed = 5.0;
   double max_acceleration = 10.0;
 
@@ -323,6 +328,10 @@ struct Settings {
   BlackBoxSettings blackbox;
   MetricsSettings metrics;
   MemorySettings memory;
+
+  /// How long a sweep waits for the samples that cover it, seconds: `map.wait`, and what they take
+  /// longer than the lidar's.
+  double motion_wait() const { return map.wait + std::max({imu.delay, encoder.delay, 0.0}); }
 };
 
 /// The settings of read_configuration().

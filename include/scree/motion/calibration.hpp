@@ -83,7 +83,7 @@ struct Calibration {
 /// @param set the settings of that drive: the encoder's scale, the places that are not looked for
 Calibration calibrate(const DriveRecord& drive, const Settings& set);
 
-/// What the settings say of it; no key holds a delay, so that is 0.
+/// What the settings say of it.
 double set_value(const Settings& set, Calibrated which);
 
 /// Whether the drive shows clearly another value than the settings': by three standard deviations.

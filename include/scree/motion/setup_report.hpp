@@ -17,17 +17,20 @@ enum class SetupFault : std::uint8_t {
   imu_rotation,    ///< imu.rpy_deg
   encoder_scale,   ///< encoder.scale, or its sign
   encoder_place,   ///< encoder.translation, y
+  imu_delay,       ///< imu.delay
+  encoder_delay,   ///< encoder.delay
   lidar_unset,     ///< lidar.translation and lidar.rpy_deg are as delivered
   motion_unknown,  ///< nothing tells how the robot moves: each sweep is taken by itself
   robot_body,      ///< robot.body lacks a box; the last, since there may be several
 };
-inline constexpr std::size_t kSetupFaults = 8;
+inline constexpr std::size_t kSetupFaults = 10;
 inline constexpr std::size_t kMostFindings = kSetupFaults - 1 + OwnReturns::kMostFound;
 
 struct SetupFinding {
   SetupFault fault = SetupFault::lidar_unset;
   bool is_grave = false;  ///< lists cannot be right
-  /// How far it is off: metres too low, degrees, times too large (below zero: of the wrong sign).
+  /// How far it is off: metres too low, degrees, times too large (below zero: of the wrong sign),
+  /// seconds too late.
   double off = 0;
   Eigen::Vector3d axis = Eigen::Vector3d::Zero();  ///< of a rotation, in `base`
   /// What the key should say; of a number the x, of a box the low corner.

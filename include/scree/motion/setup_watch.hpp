@@ -44,7 +44,7 @@ private:
   /// A window in which the robot moved, in `base` by the mounts that are set.
   struct Seen {
     double seconds = 0;
-    bool is_bound = false, has_imu = false, has_force = false, has_wheel = false;
+    bool is_bound = false, binds = false, has_imu = false, has_force = false, has_wheel = false;
     bool has_change = false;
     Eigen::Vector3d way, turn;         // of `base`, by the lidar
     Eigen::Vector3d imu_turn, imu_up;  // by the IMU
@@ -54,6 +54,8 @@ private:
     Eigen::Vector3d force, mean_force;  // less gravity, m/s^2; with that of the window before
     Eigen::Vector3d change;             // of the velocity since then, by the lidar, m/s^2
     double wheel = 0;                   // metres
+    Eigen::Vector3d imu_turn_gain;      // since SetupWindow::kBefore
+    double wheel_gain = 0;
     std::optional<GroundPlane> around, below;
   };
   enum class Word : std::uint8_t { unknown, right, wrong };
@@ -92,6 +94,25 @@ private:
     int windows = 0;
   };
 
+  /// How much later a sensor is than the lidar, seconds.
+  struct DelayFit {
+    double delay = 0, deviation = 0;
+    double unexplained = 1;  ///< share of the squares of what the sensor is behind
+  };
+  /// What a sensor is behind the lidar, and what it gains in a second.
+  class Lags {
+  public:
+    void add(double behind, double gain);
+    /// A line through zero, for which what fits badly counts less.
+    /// @param noise what may be behind without a delay
+    DelayFit fit(double noise) const;
+
+  private:
+    static constexpr std::size_t kMost = 3 * kWindows;
+    std::array<double, kMost> behind_, gain_;
+    std::size_t count_ = 0;
+  };
+
   std::span<const Seen> windows() const { return {ring_.data(), std::min(count_, kWindows)}; }
   Seen seen_in_base(const SetupWindow& window) const;
   Belief& belief(SetupFault fault) { return beliefs_[static_cast<std::size_t>(fault)]; }
@@ -106,11 +127,15 @@ private:
   WheelFit fit_wheel() const;
   Verdict judge_encoder_scale(const WheelFit& fit) const;
   Verdict judge_encoder_place(const WheelFit& fit) const;
+  Verdict judge_delay(const DelayFit& fit, SetupFault fault, double set) const;
+  Verdict judge_imu_delay() const;
+  Verdict judge_encoder_delay(const WheelFit& fit) const;
 
   Pose lidar_mount_;
   Eigen::Matrix3d lidar_, imu_;  // rotations into `base`
   double encoder_scale_;
   Eigen::Vector3d encoder_place_;
+  double imu_delay_, encoder_delay_;               // seconds
   std::array<Eigen::Matrix3d, 24> quarter_turns_;  // none first, then half turns
   std::array<Seen, kWindows> ring_;
   std::size_t count_ = 0;       // of windows since the start

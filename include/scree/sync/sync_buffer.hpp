@@ -26,6 +26,11 @@ struct WheelMotion {
   double speed = 0;     ///< m/s
 };
 
+/// By how much longer than the lidar's the messages of a sensor take to the host.
+struct SampleDelays {
+  std::int64_t imu_ns = 0, wheel_ns = 0;
+};
+
 /// The timestamp-synchronised ring buffer: samples of the IMU and of the encoder come in from one
 /// thread each, and the detector's thread asks for the motion at any instant. Bounded: a producer
 /// whose ring is full drops the new sample, and history forgets the oldest. No locks, and no memory
@@ -41,10 +46,11 @@ public:
   static constexpr std::int64_t kSetBackNs = 1'000'000'000;
 
   /// @param imu_mount rotation imu -> base
+  /// @param delays by which the samples that are put are too late
   /// @param attitude_walk see there
   explicit SyncBuffer(const Eigen::Quaterniond& imu_mount = Eigen::Quaterniond::Identity(),
-                      double attitude_walk = 0)
-      : attitude_(imu_mount), attitude_walk_(attitude_walk) {}
+                      const SampleDelays& delays = {}, double attitude_walk = 0)
+      : delays_(delays), attitude_(imu_mount), attitude_walk_(attitude_walk) {}
 
   // Producers, one thread each. False: no room, dropped and counted.
   bool put(const ImuSample& sample);
@@ -98,9 +104,10 @@ private:
   template <class Sample>
   std::uint64_t drain(Ring<Sample>& ring);
   bool accept(ImuSample sample);
-  bool accept(const EncoderSample& sample);
+  bool accept(EncoderSample sample);
   std::optional<double> mean_speed(std::int64_t t_ns) const;
 
+  SampleDelays delays_;
   Ring<ImuSample> imu_ring_;
   Ring<EncoderSample> wheel_ring_;
   SampleHistory<ImuSample> imu_{kHistory};

@@ -114,6 +114,19 @@ TEST(Calibrate, FindsEverythingThatADriveShows) {
   expect_value(found, Calibrated::encoder_delay, 0, 0.003);
 }
 
+/// Samples carry their times less the delay that is set.
+TEST(Calibrate, FindsADelayBesideTheOneThatIsSet) {
+  Settings set = robot();
+  set.imu.delay = 0.03;
+  const DriveRecord drive = record(winding(0.6, 0.05), robot(), set, 60, 0.05 - set.imu.delay);
+  const Calibration found = calibrate(drive, set);
+  expect_value(found, Calibrated::imu_delay, 0.05, 0.002);
+  EXPECT_TRUE(contradicts(found, set, Calibrated::imu_delay));
+  EXPECT_NEAR(with_calibration(set, found).imu.delay, 0.05, 0.002);
+  set.imu.delay = 0.09;
+  EXPECT_EQ(with_calibration(set, calibrate(drive, set)).imu.delay, kMostDelay);
+}
+
 TEST(Calibrate, PutsRightWhatTheDriveContradictsAndNothingElse) {
   const Settings is = robot(), set = wrong_robot();
   const DriveRecord drive = record(winding(0.6, 0.05), is, set, 60);
@@ -122,6 +135,7 @@ TEST(Calibrate, PutsRightWhatTheDriveContradictsAndNothingElse) {
   EXPECT_EQ(after.lidar.translation.y(), set.lidar.translation.y());
   EXPECT_NEAR(after.imu.rpy_deg.z(), 91, 0.2);
   EXPECT_NEAR(after.encoder.scale, 0.002, 0.00001);
+  EXPECT_EQ(after.imu.delay, 0);
 
   const DriveRecord right = record(winding(0.6, 0.05), is, is, 60);
   const Calibration found = calibrate(right, is);

@@ -40,7 +40,7 @@ public:
     const Eigen::Quaterniond to_imu = truth_.imu.mount().rotation.conjugate();
     SetupWindow window;
     window.seconds = kSeconds;
-    window.is_bound = true;
+    window.is_bound = window.binds = true;
     window.way = to_lidar * (way + turn.cross(lidar.translation));
     window.turn = to_lidar * turn;
     const GroundPlane ground{to_lidar * Eigen::Vector3d::UnitZ(), lidar.translation.z()};
@@ -51,13 +51,33 @@ public:
     window.imu_force = to_imu * change;
     window.has_wheel = true;
     window.wheel = way.x() - turn.z() * truth_.encoder.translation.y();
+    // Both gain evenly from window to window.
+    window.imu_turn_before = (1 - kEarlier) * window.imu_turn + kEarlier * imu_turn_;
+    window.wheel_before = (1 - kEarlier) * window.wheel + kEarlier * wheel_;
+    imu_turn_ = window.imu_turn;
+    wheel_ = window.wheel;
+    return window;
+  }
+
+  /// The same with messages of the IMU, or the encoder, that are late: seconds, 0.1 at most.
+  SetupWindow late_window(double speed, double rate, double imu, double wheel) {
+    SetupWindow window = this->window(speed, rate);
+    const Eigen::Vector3d turn_gain = window.imu_turn - window.imu_turn_before;
+    const double wheel_gain = window.wheel - window.wheel_before;
+    window.imu_turn -= imu / SetupWindow::kBefore * turn_gain;
+    window.imu_turn_before -= imu / SetupWindow::kBefore * turn_gain;
+    window.wheel -= wheel / SetupWindow::kBefore * wheel_gain;
+    window.wheel_before -= wheel / SetupWindow::kBefore * wheel_gain;
     return window;
   }
 
 private:
+  static constexpr double kEarlier = SetupWindow::kBefore / 0.5;  // of a window
+
   Settings truth_;
   int number_ = 0;
-  double speed_ = 0;
+  double speed_ = 0, wheel_ = 0;
+  Eigen::Vector3d imu_turn_ = Eigen::Vector3d::Zero();
 };
 
 /// What a drive with turns says against these settings.
@@ -136,6 +156,33 @@ TEST(SetupWatchTest, NamesAWheelBesideTheMiddle) {
   EXPECT_EQ(said_of(robot(), truth),
             "encoder.translation looks 0.40 m too far to the right: set [0, 0.4, 0]\n");
   EXPECT_EQ(said_of(truth, truth), "");
+}
+
+/// What a drive with starts, stops and turns says of late messages.
+std::string said_of_late(const Settings& settings, double imu, double wheel) {
+  SetupWatch watch(settings);
+  Robot driven(robot());
+  for (int i = 0; i < 18; ++i) {
+    watch.add(driven.late_window(0.7 + 0.4 * std::sin(i), 0.6 * std::sin(0.8 * i), imu, wheel));
+  }
+  std::string said;
+  for (const SetupFinding& finding : watch.report()) said += sentence(finding) + "\n";
+  return said;
+}
+
+TEST(SetupWatchTest, NamesMessagesThatAreLate) {
+  EXPECT_EQ(said_of_late(robot(), 0.02, 0.03), "");
+  EXPECT_EQ(said_of_late(robot(), 0.09, 0), "imu.delay looks 0.09 s too small: set 0.09\n");
+  EXPECT_THAT(said_of_late(robot(), 0, 0.08),
+              testing::MatchesRegex("encoder.delay looks 0.0[678] s too small: set 0.0[678]\n"));
+  Settings settings = robot();
+  settings.imu.delay = 0.07;
+  EXPECT_EQ(said_of_late(settings, -0.07, 0), "imu.delay looks 0.07 s too large: set 0\n");
+  settings.imu.delay = 0.08;
+  EXPECT_EQ(
+      said_of_late(settings, 0.08, 0),
+      "imu.delay looks 0.08 s too small: more than the key takes; find what holds up the imu's "
+      "messages\n");
 }
 
 /// A wheel that spins is no wrong scale once that was right; it is one after as long.

@@ -60,6 +60,29 @@ TEST_F(SyncBufferTest, InterpolatesASteadyTurnExactly) {
   }
 }
 
+/// What comes late was measured earlier.
+TEST_F(SyncBufferTest, TakesOffADelay) {
+  const SampleDelays delays{.imu_ns = 80 * kMillisecond, .wheel_ns = -20 * kMillisecond};
+  SyncBuffer late(Eigen::Quaterniond::Identity(), delays);
+  for (std::int64_t t = 0; t <= kSecond; t += 10 * kMillisecond) {
+    ImuSample imu = turning(t, {0, 0, 1});
+    imu.t_ns += delays.imu_ns;
+    EncoderSample wheel = rolled(t, static_cast<double>(t) * 1e-9);
+    wheel.t_ns += delays.wheel_ns;
+    late.put(imu);
+    late.put(wheel);
+  }
+  late.gather();
+  const std::int64_t half = kSecond / 2;
+  EXPECT_LT(late.attitude_at(kStart + half)->rotation.angularDistance(
+                turning(half, {0, 0, 1}).orientation),
+            1e-9);
+  EXPECT_NEAR(late.wheel_at(kStart + half)->distance, 0.5, 1e-9);
+  // The next of the IMU's samples comes 90 ms later, and it is not silent meanwhile.
+  EXPECT_FALSE(late.covers(kStart + kSecond + 200 * kMillisecond));
+  EXPECT_TRUE(late.covers(kStart + kSecond + 240 * kMillisecond));
+}
+
 TEST_F(SyncBufferTest, TurnsTheShorterWayWhenTheQuaternionChangesItsSign) {
   const Eigen::Vector3d rate(0, 0, 0.5);
   ImuSample second = turning(20 * kMillisecond, rate);

@@ -40,20 +40,15 @@ constexpr std::array<Row, kCalibrated> kRows = {{
     {Calibrated::imu_roll, "imu.rpy_deg", "roll", 2, "deg"},
     {Calibrated::imu_pitch, "imu.rpy_deg", "pitch", 2, "deg"},
     {Calibrated::imu_yaw, "imu.rpy_deg", "yaw", 2, "deg"},
-    {Calibrated::imu_delay, "imu", "delay", 3, "s"},
+    {Calibrated::imu_delay, "imu.delay", "", 3, "s"},
     {Calibrated::encoder_scale, "encoder.scale", "", 8, ""},
     {Calibrated::encoder_y, "encoder.translation", "y", 3, "m"},
-    {Calibrated::encoder_delay, "encoder", "delay", 3, "s"},
+    {Calibrated::encoder_delay, "encoder.delay", "", 3, "s"},
 }};
-
-bool is_delay(Calibrated which) {
-  return which == Calibrated::imu_delay || which == Calibrated::encoder_delay;
-}
 
 std::string verdict(const Calibration& found, const Settings& set, Calibrated which) {
   if (const auto why = found[which].why_not; !why.empty()) return "not shown: " + std::string(why);
   if (!contradicts(found, set, which)) return "agrees";
-  if (is_delay(which)) return "contradicts; no key holds it";
   const double after = set_value(with_calibration(set, found), which);
   return after == set_value(set, which) ? "contradicts; not written, not all angles are shown"
                                         : "contradicts";
@@ -103,12 +98,17 @@ std::string drop_in(const Settings& settings, const Settings& from) {
   const std::string lidar =
       list("translation", settings.lidar.translation, from.lidar.translation, 3) +
       list("rpy_deg", settings.lidar.rpy_deg, from.lidar.rpy_deg, 2);
-  const std::string imu = list("rpy_deg", settings.imu.rpy_deg, from.imu.rpy_deg, 2);
+  const auto delay = [](double is, double was) {
+    return is == was ? "" : fmt::format("delay = {:.3f}\n", is);
+  };
+  const std::string imu = list("rpy_deg", settings.imu.rpy_deg, from.imu.rpy_deg, 2) +
+                          delay(settings.imu.delay, from.imu.delay);
   const std::string encoder =
       (settings.encoder.scale == from.encoder.scale
            ? ""
            : fmt::format("scale = {:.6g}\n", settings.encoder.scale)) +
-      list("translation", settings.encoder.translation, from.encoder.translation, 3);
+      list("translation", settings.encoder.translation, from.encoder.translation, 3) +
+      delay(settings.encoder.delay, from.encoder.delay);
   std::string text = "# What a drive showed of the mounts: by `scree calibrate`.\n";
   if (!lidar.empty()) text += "[lidar]\n" + lidar;
   if (!imu.empty()) text += "[imu]\n" + imu;

@@ -8,6 +8,7 @@
 #include "detection/waiting_sweeps.hpp"
 #include "read/lidar_capture.hpp"
 #include "read/motion_capture.hpp"
+#include "scree/motion/sync_buffer_of.hpp"
 #include "scree/terrain/lidar_odometry.hpp"
 
 namespace scree::cli {
@@ -69,10 +70,10 @@ DriveCapture read_drive(const std::filesystem::path& capture, const std::filesys
                         const Settings& settings) {
   const HostSteps steps = find_host_steps(capture, settings.lidar);
   LidarCapture lidar(capture, settings, steps);
-  const auto sensors = std::make_unique<SyncBuffer>(settings.imu.mount().rotation);
+  const auto sensors = sync_buffer_of(settings);
   MotionCapture motion(capture, config, settings, *sensors, steps);
   Recorder recorder(settings, *sensors);
-  WaitingSweeps waiting(settings.map.wait, *sensors, [&](const Sweep& sweep) {
+  WaitingSweeps waiting(settings.motion_wait(), *sensors, [&](const Sweep& sweep) {
     sensors->gather();
     recorder.add(sweep);
   });

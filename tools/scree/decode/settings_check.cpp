@@ -1,15 +1,16 @@
 #include "decode/settings_check.hpp"
 
 #include "commands.hpp"
+#include "scree/motion/sync_buffer_of.hpp"
 
 namespace scree::cli {
 
 SettingsCheck::SettingsCheck(const std::filesystem::path& capture,
                              const std::filesystem::path& config, const Settings& settings,
                              const HostSteps& steps)
-    : sensors_(std::make_unique<SyncBuffer>(settings.imu.mount().rotation)),
+    : sensors_(sync_buffer_of(settings)),
       probe_(settings),
-      waiting_(settings.map.wait, *sensors_, [this](const Sweep& sweep) {
+      waiting_(settings.motion_wait(), *sensors_, [this](const Sweep& sweep) {
         probe_.add(sweep, *sensors_);
         log_.add(probe_.report());
       }) {

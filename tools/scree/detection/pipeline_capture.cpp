@@ -55,7 +55,7 @@ PipelineCapture::PipelineCapture(const std::filesystem::path& capture,
 
 void PipelineCapture::play(const std::function<void(const Sweep&)>& process) {
   SetupLog setup;
-  WaitingSweeps waiting(settings_.map.wait, pipeline_.sensors(), [&](const Sweep& sweep) {
+  WaitingSweeps waiting(settings_.motion_wait(), pipeline_.sensors(), [&](const Sweep& sweep) {
     process(sweep);
     setup.add(pipeline_.setup());
   });
@@ -72,7 +72,7 @@ void PipelineCapture::play(const std::function<void(const Sweep&)>& process) {
   });
   // Motion goes on until the last sweeps are covered, and no further: history is short.
   constexpr std::int64_t kStepNs = 10'000'000;
-  const std::int64_t end_ns = now_ns + static_cast<std::int64_t>(settings_.map.wait * 1e9);
+  const std::int64_t end_ns = now_ns + static_cast<std::int64_t>(settings_.motion_wait() * 1e9);
   for (; waiting.has_any() && now_ns < end_ns; now_ns += kStepNs) {
     motion_.play_until(now_ns);
     waiting.process_ready(now_ns);
