@@ -58,20 +58,16 @@ void SetupProbe::add_step(const SyncBuffer& sensors) {
   window_.turn += logarithm(odometry_.step().rotation);
   window_.binds = window_.binds && odometry_.is_bound();
   constexpr auto kBeforeNs = static_cast<std::int64_t>(SetupWindow::kBefore * 1e9);
-  const auto turn = imu_turn(sensors, begin_ns, end_ns);
-  const auto turn_before = imu_turn(sensors, begin_ns - kBeforeNs, end_ns - kBeforeNs);
-  window_.has_imu = window_.has_imu && turn && turn_before;
-  if (window_.has_imu) {
-    window_.imu_turn += *turn;
-    window_.imu_turn_before += *turn_before;
-  }
-  const auto way = wheel_way(sensors, begin_ns, end_ns);
-  const auto way_before = wheel_way(sensors, begin_ns - kBeforeNs, end_ns - kBeforeNs);
-  window_.has_wheel = window_.has_wheel && way && way_before;
-  if (window_.has_wheel) {
-    window_.wheel += *way;
-    window_.wheel_before += *way_before;
-  }
+  const auto add = [&](const auto& measured, bool& has_all, auto& sum, auto& sum_before) {
+    const auto now = measured(sensors, begin_ns, end_ns);
+    const auto before = measured(sensors, begin_ns - kBeforeNs, end_ns - kBeforeNs);
+    has_all = has_all && now && before;
+    if (!has_all) return;
+    sum += *now;
+    sum_before += *before;
+  };
+  add(imu_turn, window_.has_imu, window_.imu_turn, window_.imu_turn_before);
+  add(wheel_way, window_.has_wheel, window_.wheel, window_.wheel_before);
 }
 
 void SetupProbe::end_window(const SyncBuffer& sensors) {

@@ -74,8 +74,8 @@ TEST_F(SyncBufferTest, TakesOffADelay) {
   }
   late.gather();
   const std::int64_t half = kSecond / 2;
-  EXPECT_LT(late.attitude_at(kStart + half)->rotation.angularDistance(
-                turning(half, {0, 0, 1}).orientation),
+  EXPECT_LT(late.attitude_at(kStart + half)
+                ->rotation.angularDistance(turning(half, {0, 0, 1}).orientation),
             1e-9);
   EXPECT_NEAR(late.wheel_at(kStart + half)->distance, 0.5, 1e-9);
   // The next of the IMU's samples comes 90 ms later, and it is not silent meanwhile.
