@@ -127,14 +127,17 @@ void MovingTracker::add_to(FixedVector<Obstacle>& list, Tracker& standing) {
 }
 
 bool MovingTracker::was_left(const Obstacle& standing) const {
-  constexpr double kBeside = 0.4;  // metres from its way
+  constexpr double kBeside = 0.5;  // metres from its way
+  constexpr double kBefore = 1;    // metres: where it stood, nothing was clear around it
   const Eigen::Vector2d place = standing.center.head<2>();
   return std::ranges::any_of(tracks_, [&](const Track& track) {
     const Eigen::Vector2d way = track.obstacle.center.head<2>() - track.start;
-    if (track.obstacle.id == 0 || way.norm() < kLeastWay) return false;
+    const double length = way.norm();
+    if (track.obstacle.id == 0 || length < kLeastWay) return false;
     if (distance_to_box(track.obstacle, standing.center) == 0) return false;
-    const double share = std::clamp((place - track.start).dot(way) / way.squaredNorm(), 0.0, 1.0);
-    return (place - track.start - share * way).norm() < kBeside;
+    const Eigen::Vector2d ahead = way / length;
+    const double along = std::clamp((place - track.start).dot(ahead), -kBefore, length);
+    return (place - track.start - along * ahead).norm() < kBeside;
   });
 }
 

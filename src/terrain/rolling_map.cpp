@@ -104,7 +104,6 @@ void RollingMap::add_points(const DeskewedSweep& sweep, const Eigen::Matrix3f& r
                             const Eigen::Vector3f& translation, float reach) {
   // Shots ahead whose voxels are fetched into the cache, and whose places in the index before that.
   constexpr std::size_t kVoxelAhead = 8, kIndexAhead = 16;
-  const auto search_reach = static_cast<float>(settings_.search_reach);
   const Eigen::Vector3f origin = origin_.cast<float>();
   const std::size_t count = sweep.points.size();
   const auto point_in_base = [&](std::size_t i) {
@@ -119,7 +118,7 @@ void RollingMap::add_points(const DeskewedSweep& sweep, const Eigen::Matrix3f& r
     const Eigen::Vector3f in_base = point_in_base(i);
     if (in_base.squaredNorm() > reach * reach) continue;
     const Eigen::Vector3f point = rotation * in_base + translation;
-    if (in_base.squaredNorm() <= search_reach * search_reach) {
+    if (in_base.squaredNorm() <= FreeSpace::kReach * FreeSpace::kReach) {
       free_space_.add_hit(point + origin, sweep_);
     }
     if (sweep.is_moving[i] != 0) continue;

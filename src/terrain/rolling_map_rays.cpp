@@ -39,13 +39,12 @@ void RollingMap::trace_ray(const Eigen::Vector3f& from, const Eigen::Vector3f& b
   constexpr float kMissRadius = 0.6F;                  // of a voxel: a beam this near misses it
   constexpr float kGrassRadius = 0.4F;                 // the same where grass is counted
   const auto voxel_size = static_cast<float>(settings_.voxel);
-  const auto search_reach = static_cast<float>(settings_.search_reach);
   const Eigen::Vector3f origin = origin_.cast<float>();
   const float miss_radius = kMissRadius * voxel_size, grass_radius = kGrassRadius * voxel_size;
   const float range = beam.norm();
   const float end = std::min(range - std::max(kClear, kClearShare * range), reach);
   const Eigen::Vector3f along = beam / range;
-  free_space_.add_beams(from + origin, along, std::min(end, search_reach), sweep_, kRayStride);
+  free_space_.add_beams(from + origin, along, std::min(end, FreeSpace::kReach), sweep_, kRayStride);
   const float grass_end = std::min(range - kGrassClear, reach);
   const auto steps = static_cast<int>(std::ceil(grass_end * inverse_));
   const MapVoxel* last = nullptr;

@@ -20,6 +20,9 @@ namespace scree {
 class FreeSpace {
 public:
   static constexpr float kCell = 0.25F;  ///< edge, metres; the grid is 32 m wide and 8 m high
+  /// Metres around the robot within which beams are counted: where obstacles are searched for, and
+  /// some way on, so that it is known by then what is clear.
+  static constexpr float kReach = 15;
 
   FreeSpace() : cells_(Grid::kSlots) { clear(); }
 

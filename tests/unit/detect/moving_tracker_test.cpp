@@ -107,6 +107,8 @@ TEST_F(MovingTrackerTest, KnowsWhatItCameFrom) {
   EXPECT_TRUE(tracker_.was_left(left));
   EXPECT_FALSE(tracker_.was_left(there)) << "it is there";
   EXPECT_FALSE(tracker_.was_left(beside));
+  EXPECT_TRUE(tracker_.was_left(person(5.3, -0.8))) << "where it stood before it was seen to move";
+  EXPECT_FALSE(tracker_.was_left(person(5, -1.8)));
 }
 
 TEST_F(MovingTrackerTest, MoreThanItHasRoomForAreCounted) {
