@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "scree/detect/box_cut.hpp"
 #include "scree/detect/label.hpp"
 
 namespace scree {
@@ -67,29 +68,66 @@ void Clusters::part_around(const Eigen::Vector2f& place, PointView points, std::
                                std::partition(middle, last, is_ahead), last};
     for (std::size_t k = 0; k + 1 < bounds.size(); ++k) {
       if (bounds[k + 1] - bounds[k] < static_cast<std::ptrdiff_t>(min_size)) continue;
-      add_part(whole, static_cast<std::uint32_t>(bounds[k] - members_.begin()),
-               static_cast<std::uint32_t>(bounds[k + 1] - members_.begin()), points);
+      // In the direction of the whole, so that it ends where the part does.
+      clusters_.push_back(part(static_cast<std::uint32_t>(bounds[k] - members_.begin()),
+                               static_cast<std::uint32_t>(bounds[k + 1] - members_.begin()), points,
+                               whole.box.yaw));
     }
   }
   std::copy(clusters_.begin() + before, clusters_.end(), clusters_.begin() + kept);
   clusters_.resize(kept + clusters_.size() - before);
 }
 
-/// Adds a part of a cluster. Its box has the direction of the whole, so that it ends where the part
-/// does.
-void Clusters::add_part(const Cluster& whole, std::uint32_t begin, std::uint32_t end,
-                        PointView points) {
+void Clusters::part_bent(const CandidatePoints& points, std::uint32_t min_size) {
+  constexpr float kLong = 4, kWide = 1.5F;  // metres
+  for (std::size_t i = 0; i < clusters_.size();) {
+    const Cluster& whole = clusters_[i];
+    const bool is_above = points.height[members(whole)[0]] > 0;
+    const bool may_be_bent = is_above && whole.box.length > kLong && whole.box.width > kWide;
+    const std::uint32_t begin = whole.begin, end = whole.end;
+    const std::uint32_t middle = may_be_bent ? cut(whole, points.points) : end;
+    if (middle - begin < min_size || end - middle < min_size) {
+      ++i;
+      continue;
+    }
+    clusters_[i] = part(begin, middle, points.points);
+    clusters_.push_back(part(middle, end, points.points));
+  }
+}
+
+/// Parts a cluster's points where that leaves much less area.
+/// @return the first of the second part; the cluster's end where it does not
+std::uint32_t Clusters::cut(const Cluster& cluster, PointView points) {
+  constexpr float kWorthIt = 0.5F;            // share of the box's area that is left
+  constexpr float kStrip = 1;                 // metres: what an arm is wide
+  constexpr std::uint32_t kMostSample = 512;  // points that tell where
+  const auto indices = members(cluster);
+  const auto stride = static_cast<std::uint32_t>(indices.size()) / kMostSample + 1;
+  place_.clear();
+  for (std::size_t i = 0; i < indices.size(); i += stride) place_.push_back(indices[i]);
+  const BestCut best = best_cut(points, {place_.data(), place_.size()}, cluster.box, kStrip);
+  if (best.area >= kWorthIt * area_of(cluster.box)) return cluster.end;
+  const auto middle =
+      std::partition(members_.begin() + cluster.begin, members_.begin() + cluster.end,
+                     [&](std::uint32_t i) { return best.cut.has_first(points.x[i], points.y[i]); });
+  return static_cast<std::uint32_t>(middle - members_.begin());
+}
+
+/// A part of a cluster.
+/// @param yaw of its box; none: that of the smallest
+Cluster Clusters::part(std::uint32_t begin, std::uint32_t end, PointView points,
+                       std::optional<float> yaw) const {
   Cluster part;
   part.begin = begin;
   part.end = end;
   part.size = end - begin;
   const auto indices = members(part);
-  part.box = box_along(whole.box.yaw, points, indices);
+  part.box = yaw ? box_along(*yaw, points, indices) : smallest_box(points, indices);
   const auto [low, high] =
       std::ranges::minmax(indices, {}, [&](std::uint32_t i) { return points.z[i]; });
   part.lowest = points.z[low];
   part.highest = points.z[high];
-  clusters_.push_back(part);
+  return part;
 }
 
 Features measure(const CandidatePoints& edges, std::span<const std::uint32_t> members) {

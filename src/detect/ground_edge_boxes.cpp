@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
+#include "scree/detect/box_cut.hpp"
 #include "scree/detect/ground_edges.hpp"
 #include "scree/detect/neighbours.hpp"
 #include "scree/detect/quantile.hpp"
@@ -99,44 +99,27 @@ OrientedBox GroundEdges::box_around(std::uint32_t begin, std::uint32_t end) {
   return box;
 }
 
-/// Parts cells by a line across or along their box, where the boxes of both parts are smallest
-/// together. A ring, the edge of a pit, stays whole.
+/// Parts cells where the boxes of both parts are smallest together. A ring, the edge of a pit,
+/// stays whole.
 /// @return the first of the second part; `end` where no cut is worth it
 std::uint32_t GroundEdges::cut(std::uint32_t begin, std::uint32_t end, const OrientedBox& box) {
   constexpr float kMostGround = 0.3F;  // share of a box that may be ground
   constexpr float kWorthIt = 0.6F;     // share of the box's area that is left
-  const float strip = 1.25F * kStrip;
-  const auto area = [](const OrientedBox& each) {
-    return each.length * std::max(each.width, kLeastWidth);
-  };
-  const auto part = [&](bool along, float place) {
-    const float c = std::cos(box.yaw), s = std::sin(box.yaw);
-    const std::size_t columns = surface_->columns();
-    const auto middle =
-        std::partition(cells_.begin() + begin, cells_.begin() + end, [&](std::uint32_t cell) {
-          const float x = surface_->x_of(cell % columns) - box.center_x;
-          const float y = surface_->y_of(cell / columns) - box.center_y;
-          return (along ? x * c + y * s : y * c - x * s) < place;
-        });
-    return static_cast<std::uint32_t>(middle - cells_.begin());
-  };
-  float least = std::numeric_limits<float>::infinity(), best_place = 0;
-  bool best_along = true;
-  for (const bool along : {true, false}) {
-    const float half = (along ? box.length : box.width) / 2;
-    for (const float place : {strip - half, -half / 3, 0.0F, half / 3, half - strip}) {
-      const std::uint32_t middle = part(along, place);
-      if (middle == begin || middle == end) continue;
-      const float left = area(box_around(begin, middle)) + area(box_around(middle, end));
-      if (left >= least) continue;
-      least = left;
-      best_along = along;
-      best_place = place;
-    }
-  }
-  const bool is_worth_it =
-      least < kWorthIt * area(box) || (std::isfinite(least) && ground_share(box) > kMostGround);
-  return is_worth_it ? part(best_along, best_place) : end;
+  const std::size_t first = places_.size();
+  add_places(begin, end);
+  order_.resize(places_.size() - first);
+  std::iota(order_.begin(), order_.end(), static_cast<std::uint32_t>(first));
+  const BestCut best = best_cut(places_, {order_.data(), order_.size()}, box, 1.25F * kStrip);
+  places_.resize(first);
+  const bool is_worth_it = best.area < kWorthIt * area_of(box) ||
+                           (std::isfinite(best.area) && ground_share(box) > kMostGround);
+  if (!is_worth_it) return end;
+  const std::size_t columns = surface_->columns();
+  const auto middle =
+      std::partition(cells_.begin() + begin, cells_.begin() + end, [&](std::uint32_t cell) {
+        return best.cut.has_first(surface_->x_of(cell % columns), surface_->y_of(cell / columns));
+      });
+  return static_cast<std::uint32_t>(middle - cells_.begin());
 }
 
 /// Share of a box in which ground was seen.

@@ -69,10 +69,9 @@ ClusteredPoints SurfaceMethod::find(const PointCloud& points, const SeenCloud& c
                          euclidean_, kept_);
   timer.done(Stage::suppression);
   cluster(counts);
-  if (cloud.robot) {
-    clusters_.part_around(*cloud.robot, kept_.points,
-                          static_cast<std::uint32_t>(settings_.min_cluster_size));
-  }
+  const auto min_size = static_cast<std::uint32_t>(settings_.min_cluster_size);
+  clusters_.part_bent(kept_, min_size);
+  if (cloud.robot) clusters_.part_around(*cloud.robot, kept_.points, min_size);
   timer.done(Stage::clusters);
   measure_clusters(points);
   timer.done(Stage::features);

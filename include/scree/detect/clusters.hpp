@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "scree/core/obstacle.hpp"
@@ -40,6 +41,10 @@ public:
   /// least `min_size` points: nothing stands where the robot does.
   void part_around(const Eigen::Vector2f& place, PointView points, std::uint32_t min_size);
 
+  /// Parts each long cluster above the ground whose box is mostly empty, as that of a wall around a
+  /// corner or of a bent step is, into parts of at least `min_size` points.
+  void part_bent(const CandidatePoints& points, std::uint32_t min_size);
+
   std::span<Cluster> all() { return clusters_; }
   std::span<const Cluster> all() const { return clusters_; }
   /// Indices of a cluster's points among the edge points.
@@ -51,7 +56,9 @@ public:
 private:
   static constexpr std::size_t kMostParts = 4;  // more than a cluster was
 
-  void add_part(const Cluster& whole, std::uint32_t begin, std::uint32_t end, PointView points);
+  Cluster part(std::uint32_t begin, std::uint32_t end, PointView points,
+               std::optional<float> yaw = std::nullopt) const;
+  std::uint32_t cut(const Cluster& cluster, PointView points);
 
   FixedVector<Cluster> clusters_;
   FixedVector<std::uint32_t> members_, place_;

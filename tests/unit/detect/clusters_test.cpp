@@ -162,5 +162,45 @@ TEST(Clusters, AnObstacleAroundAPlaceIsPartedIntoQuartersWithoutAllocating) {
   EXPECT_EQ(points, 360U);
 }
 
+/// Points each 0.1 m on the two arms of a corner at the origin, `height` above the ground.
+CandidatePoints corner(float arm, float height) {
+  CandidatePoints points(1000);
+  PointCloud cloud(1000);
+  for (int i = 0; i < static_cast<int>(10 * arm); ++i) {
+    const float way = 0.1F * static_cast<float>(i);
+    cloud.push_back(way, 0, height, 0);
+    cloud.push_back(0, way, height, 0);
+  }
+  for (std::size_t i = 0; i < cloud.size(); ++i) points.push_back(cloud, i, 0, 0, height);
+  return points;
+}
+
+std::size_t parts_of(const CandidatePoints& points, Clusters& clusters) {
+  const auto size = static_cast<std::uint32_t>(points.size());
+  const std::vector<std::uint32_t> labels(size, 0), sizes = {size};
+  clusters.gather(points, labels, sizes, 1);
+  const std::size_t before = test::allocations();
+  clusters.part_bent(points, 4);
+  EXPECT_EQ(test::allocations(), before);
+  return clusters.all().size();
+}
+
+TEST(Clusters, AWallAroundACornerIsTwoWalls) {
+  const CandidatePoints wall = corner(8, 0.5F);
+  Clusters clusters(1000);
+  ASSERT_EQ(parts_of(wall, clusters), 2U);
+  for (const Cluster& part : clusters.all()) {
+    EXPECT_LT(part.box.width, 1.1F);
+    EXPECT_GT(part.box.length, 6.5F);
+  }
+}
+
+TEST(Clusters, WhatIsShortOrFilledOrBelowStaysWhole) {
+  Clusters clusters(1000);
+  EXPECT_EQ(parts_of(corner(2, 0.5F), clusters), 1U);
+  EXPECT_EQ(parts_of(corner(8, -0.5F), clusters), 1U) << "the rim of a pit";
+  EXPECT_EQ(parts_of(flank(3, 4), clusters), 1U) << "a heap";
+}
+
 }  // namespace
 }  // namespace scree

@@ -32,5 +32,15 @@ TEST(ResolveOverlaps, ARockAroundASurerHoleIsItsRim) {
   EXPECT_EQ(list[1].id, far.id);
 }
 
+TEST(ResolveOverlaps, ALongStepStaysBesideASurerHole) {
+  Obstacle step = box(3, 1, 9, 2, 50);
+  const Obstacle hole = box(3.4, 1.3, 1, 0.5, 900, ObstacleKind::negative);
+  step.confidence = 0.8F;
+  FixedVector<Obstacle> list(8);
+  for (const Obstacle& obstacle : {step, hole}) list.push_back(obstacle);
+  resolve_overlaps(list);
+  EXPECT_EQ(list.size(), 2U);
+}
+
 }  // namespace
 }  // namespace scree
