@@ -121,7 +121,7 @@ public:
       return fail(fmt::format("{}:{}: {}.{} {}", origin, line_, message_, signal_, found_->fault));
     }
     if (!fault_.empty()) return fail(fmt::format("{}:{}", origin, fault_));
-    if (text.is_open() || (messages_.empty() && text.quoted_from() > 0)) {
+    if (text.is_open() || (messages_.empty() && text.swallows())) {
       return fail(
           fmt::format("{}:{}: the text in quotes that begins here has no end: write a \\ "
                       "before its last quote as \\\\",

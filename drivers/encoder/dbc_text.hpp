@@ -22,6 +22,8 @@ public:
   int number() const { return number_; }
   /// Whether quotes are still open at the end of the text.
   bool is_open() const { return is_quoted_; }
+  /// Whether messages or signals stand in quotes.
+  bool swallows() const { return swallowing_from_ > 0; }
   /// The line of the first quote behind which messages or signals stand, else of the last one; 0:
   /// none.
   int quoted_from() const { return swallowing_from_ > 0 ? swallowing_from_ : quoted_from_; }

@@ -13,11 +13,14 @@ namespace {
 
 /// The capture itself when it is a file, else the first of these names that is in its folder.
 Result<fs::path> file_of(const fs::path& capture, std::initializer_list<const char*> names) {
-  std::error_code ignored;
-  if (!fs::exists(capture, ignored)) return fail(capture.string() + ": no such file or folder");
+  std::error_code ignored, error;
+  if (!fs::exists(capture, error)) {
+    return fail(capture.string() + ": " + (error ? error.message() : "no such file or folder"));
+  }
   if (!fs::is_directory(capture, ignored)) return capture;
   for (const char* name : names) {
-    if (fs::exists(capture / name, ignored)) return capture / name;
+    if (fs::exists(capture / name, error)) return capture / name;
+    if (error) return fail((capture / name).string() + ": " + error.message());
   }
   return fail(capture.string() + ": the folder has no " + *names.begin());
 }

@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -64,42 +67,53 @@ Result<Bytes> unpacked(std::string_view body, const PcdHeader& header) {
   return interleaved(columns, header);
 }
 
-template <class T>
-void store(T value, std::uint8_t* bytes) {
-  std::memcpy(bytes, &value, sizeof value);
-}
-
-/// The number that a word begins with; what is too large or too small as the C library rounds it.
+/// What is too large or too small is rounded as the C library does. Nothing: no number.
 template <class Real>
-Real real_of(std::string_view word) {
+std::optional<Real> real_of(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
+  const char* const end = word.data() + word.size();
   Real value = 0;
-  const auto read = std::from_chars(word.data(), word.data() + word.size(), value);
+  const auto read = std::from_chars(word.data(), end, value);
+  // As Microsoft's C library wrote what is no number: 1.#QNAN, -1.#IND, 1.#INF.
+  if (read.ec == std::errc::invalid_argument) return std::nullopt;
+  if (read.ptr != end && *read.ptr == '#') return std::numeric_limits<Real>::quiet_NaN();
+  if (read.ptr != end) return std::nullopt;
   if (read.ec != std::errc::result_out_of_range) return value;
   return static_cast<Real>(std::strtold(std::string(word).c_str(), nullptr));
 }
 
-/// A negative number wraps in an unsigned field; what is no number is 0.
-std::uint64_t whole_of(std::string_view word) {
+/// A negative number wraps in an unsigned field, and a fraction is cut off. Nothing: no number.
+std::optional<std::uint64_t> whole_of(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
-  const char* end = word.data() + word.size();
+  const char* const end = word.data() + word.size();
+  const auto is_all = [end](const std::from_chars_result& read) {
+    return read.ec == std::errc{} && read.ptr == end;
+  };
   std::int64_t negative = 0;
   std::uint64_t value = 0;
-  if (std::from_chars(word.data(), end, negative).ec == std::errc{}) {
+  if (is_all(std::from_chars(word.data(), end, negative))) {
     return static_cast<std::uint64_t>(negative);
   }
-  std::from_chars(word.data(), end, value);
-  return value;
+  if (is_all(std::from_chars(word.data(), end, value))) return value;
+  constexpr double kLargest = 9e18;
+  const auto real = real_of<double>(word);
+  if (!real) return std::nullopt;
+  return std::abs(*real) < kLargest ? static_cast<std::uint64_t>(static_cast<std::int64_t>(*real))
+                                    : 0;
 }
 
-void store_word(std::string_view word, const PcdField& field, std::uint8_t* bytes) {
-  if (field.type == 'F') {
-    return field.size == 4 ? store(real_of<float>(word), bytes)
-                           : store(real_of<double>(word), bytes);
-  }
+template <class T>
+bool store(const std::optional<T>& value, std::size_t size, std::uint8_t* bytes) {
   // Little-endian, as all of PCD: the low bytes come first.
-  const std::uint64_t value = whole_of(word);
-  std::memcpy(bytes, &value, field.size);
+  if (value) std::memcpy(bytes, &*value, size);
+  return value.has_value();
+}
+
+/// False where the word is no number.
+bool store_word(std::string_view word, const PcdField& field, std::uint8_t* bytes) {
+  if (field.type != 'F') return store(whole_of(word), field.size, bytes);
+  return field.size == 4 ? store(real_of<float>(word), field.size, bytes)
+                         : store(real_of<double>(word), field.size, bytes);
 }
 
 /// The next word of a line; empty at its end.
@@ -111,17 +125,20 @@ std::string_view next_word(std::string_view& line) {
   return word;
 }
 
-/// False where the line has too few values. Padding at its end may be missing.
-bool store_line(std::string_view line, const PcdHeader& header, std::uint8_t* point) {
+/// What is wrong with a line; empty: nothing. Padding at its end may be missing.
+std::string store_line(std::string_view line, const PcdHeader& header, std::uint8_t* point) {
   for (const PcdField& field : header.fields) {
     for (std::size_t i = 0; i < field.count; ++i) {
       const std::string_view word = next_word(line);
       if (field.name == "_") continue;
-      if (word.empty()) return false;
-      store_word(word, field, point + field.offset + i * field.size);
+      if (word.empty()) return "too few values";
+      if (!store_word(word, field, point + field.offset + i * field.size)) {
+        constexpr std::size_t kShown = 30;
+        return fmt::format("'{}', which is no number,", word.substr(0, kShown));
+      }
     }
   }
-  return true;
+  return "";
 }
 
 Result<Bytes> parsed(std::string_view text, const PcdHeader& header) {
@@ -131,9 +148,8 @@ Result<Bytes> parsed(std::string_view text, const PcdHeader& header) {
     std::string_view line = text.substr(0, text.find('\n'));
     text.remove_prefix(std::min(line.size() + 1, text.size()));
     if (std::string_view rest = line; next_word(rest).empty()) continue;
-    if (!store_line(line, header, points.data() + count * header.point_size)) {
-      return fail(fmt::format("has too few values for point {}", count + 1));
-    }
+    const std::string wrong = store_line(line, header, points.data() + count * header.point_size);
+    if (!wrong.empty()) return fail(fmt::format("has {} for point {}", wrong, count + 1));
     ++count;
   }
   if (count == header.points) return points;

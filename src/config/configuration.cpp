@@ -165,7 +165,9 @@ std::vector<std::filesystem::path> drop_ins(std::filesystem::path file) {
   std::error_code none;
   for (const auto& entry :
        std::filesystem::directory_iterator(file.replace_extension(".d"), none)) {
-    if (entry.path().extension() == ".toml") found.push_back(entry.path());
+    // Hidden files are those of editors and other systems.
+    const bool is_hidden = entry.path().filename().string().starts_with('.');
+    if (entry.path().extension() == ".toml" && !is_hidden) found.push_back(entry.path());
   }
   std::ranges::sort(found);
   return found;

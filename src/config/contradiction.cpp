@@ -44,6 +44,16 @@ std::vector<Contradiction> contradictions(const Settings& settings) {
     found.push_back({{"encoder.dbc", "encoder.signal"},
                      "encoder.dbc and encoder.signal belong together, one of them is empty"});
   }
+  constexpr std::size_t kLongestInterface = 15;  // IFNAMSIZ, less the zero
+  if (encoder.interface.size() > kLongestInterface) {
+    found.push_back({{"encoder.interface"},
+                     "encoder.interface is longer than the 15 letters of any interface's name"});
+  }
+  const GpioSettings& gpio = settings.gpio;
+  if (!gpio.stop.empty() && gpio.stop == gpio.heartbeat) {
+    found.push_back(
+        {{"gpio.stop", "gpio.heartbeat"}, "gpio.stop and gpio.heartbeat must be different lines"});
+  }
   const int lists = settings.detect.lists_per_turn;
   if (lists != 1 && lists != 2 && lists != 4 && lists != 8) {
     found.push_back({{"detect.lists_per_turn"}, "detect.lists_per_turn must be 1, 2, 4 or 8"});

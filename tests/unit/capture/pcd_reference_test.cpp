@@ -117,7 +117,7 @@ TEST(PcdReference, ReadsTheWordsOfAnAsciiFileAsPclDoes) {
       "VERSION 0.7\nFIELDS x y z intensity\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\n";
   const std::string lines =
       "+1.5 -2e3 .25 7\n\n 1e-46 1e39 -1e400 8\n\tnan NaN -nan 9\n"
-      "inf -inf 1.5abc 10\r\n-.5 1e5 00012.50 11\n3.4028235e38 1.17549435e-38 "
+      "inf -inf 1.5 10\r\n-.5 1e5 00012.50 11\n3.4028235e38 1.17549435e-38 "
       "0.1 12\n";
   expect_as_pcl(
       folder.write("words.pcd", header + "WIDTH 6\nHEIGHT 1\nPOINTS 6\nDATA ascii\n" + lines));

@@ -121,6 +121,18 @@ TEST(Pcd, KeepsPointsThatAreNotFinite) {
   EXPECT_EQ(read->z[1], 3.0F);
 }
 
+TEST(Pcd, WordsOfMicrosoftAndFractionsInWholeFieldsAreRead) {
+  const TemporaryFolder folder;
+  const auto read = read_pcd(
+      folder.write("cloud.pcd", header("x y z intensity", "4 4 4 1", "F F F U", "2", "ascii") +
+                                    "1.#QNAN -1.#IND 1.#INF 12.7\n1 2 3 200\n"));
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_TRUE(std::isnan(read->x[0]));
+  EXPECT_TRUE(std::isnan(read->z[0]));
+  EXPECT_EQ(read->reflectivity[0], 12);
+  EXPECT_EQ(read->reflectivity[1], 200);
+}
+
 std::string error_of(const std::string& bytes) {
   const TemporaryFolder folder;
   const auto read = read_pcd(folder.write("bad.pcd", bytes));
@@ -142,6 +154,10 @@ TEST(Pcd, EveryBadFileIsOneSentence) {
   EXPECT_THAT(error_of(xyz("4000000000", "binary") + point), HasSubstr("bad WIDTH"));
   EXPECT_THAT(error_of(xyz("2000000000", "binary") + point), HasSubstr("is cut"));
   EXPECT_THAT(error_of(xyz("2000000000", "ascii") + "1 2 3\n"), HasSubstr("is cut"));
+  EXPECT_THAT(error_of(xyz("1", "ascii") + "1,234 0,5 3\n"),
+              HasSubstr("'1,234', which is no number, for point 1"));
+  EXPECT_THAT(error_of(xyz("2", "ascii") + "1 2 3\n# here now yes\n4 5 6\n"),
+              HasSubstr("'#', which is no number, for point 2"));
   EXPECT_THAT(error_of(xyz("3", "ascii") + "1.00 2.00 3.00\n 4.00 5.00 6.00 \n"),
               HasSubstr("bad.pcd: is cut: 2 of 3 points"));
   EXPECT_THAT(error_of(xyz("-1", "binary") + point), HasSubstr("bad WIDTH"));

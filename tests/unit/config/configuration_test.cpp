@@ -27,11 +27,19 @@ protected:
   TemporaryFolder folder_;
 };
 
+TEST_F(ConfigurationTest, WhatScreedWouldRefuseIsRefused) {
+  EXPECT_THAT(error_of(write("[encoder]\ninterface = 'averyverylonginterface'\n")),
+              HasSubstr("scree.toml:2: encoder.interface is longer"));
+  EXPECT_THAT(error_of(write("[gpio]\nstop = 'gpiochip0:5'\nheartbeat = 'gpiochip0:5'\n")),
+              HasSubstr("must be different lines"));
+}
+
 TEST_F(ConfigurationTest, DropInsGoOverTheFileInTheOrderOfTheirNames) {
   const auto file = write("[lidar]\nport = 4000\nposition_port = 4001\nmin_range = 0.7\n");
   folder_.write("scree.d/20-second.toml", "[lidar]\n\nport = 6000\n");
   folder_.write("scree.d/10-first.toml", "[lidar]\nport = 5000\nposition_port = 5001\n");
   folder_.write("scree.d/30-kept-aside.toml.off", "[lidar]\nport = 7000\n");
+  folder_.write("scree.d/.#40-of-an-editor.toml", "[lidar]\nport = 7000\n");
   const auto read = read_configuration(file);
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_EQ(read->settings.lidar.port, 6000);

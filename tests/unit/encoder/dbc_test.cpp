@@ -114,6 +114,7 @@ TEST(Dbc, NamesWhatIsNearAMistypedName) {
   EXPECT_THAT(error_of("IN_A_COMMENT.Ghost"),
               AllOf(HasSubstr("no message"), Not(HasSubstr("Ghost"))));
   EXPECT_THAT(error_of("A.B", "not a file of that kind"), HasSubstr("no DBC file"));
+  EXPECT_THAT(error_of("A.B", "VERSION \"\"\n\nNS_ :\n"), HasSubstr("no DBC file"));
 }
 
 TEST(Dbc, ATextThatBreaksOffNamesTheLineAndWhatItLacks) {
