@@ -76,6 +76,40 @@ class CommandLineTest(ProgramTest):
             self.scree(*command, "--force")
         self.scree("decode", capture, "--sensor", "imu", "--out", "/dev/null")
 
+    def test_what_is_read_is_never_overwritten(self):
+        capture, lists = self.simulate(1), self.path("lists.jsonl")
+        self.scree("detect", capture, "--out", lists)
+        lidar, truth = (os.path.join(capture, name) for name in ("lidar.pcap", "truth.json"))
+        for command in (
+            ["detect", capture, "--out", lidar],
+            ["decode", capture, "--sensor", "lidar", "--out", lidar],
+            ["report", capture, "--out", lidar],
+            ["report", lists, "--out", lists],
+            ["picture", capture, lists, "--out", lists],
+            ["evaluate", truth, lists, "--matches", lists],
+            ["evaluate", truth, lists, "--matches", truth],
+        ):
+            self.assert_fails(self.run_to_end(SCREE, *command, "--force"), "it cannot be written, too")
+        for folder in (capture, os.path.join(capture, ".")):
+            refused = self.run_to_end(SCREE, "slice", lidar, folder, "--force")
+            self.assert_fails(refused, "a part cannot take the place")
+        both = os.path.join(self.path("both"), "..", "both")
+        refused = self.run_to_end(SCREE, "detect", capture, "--out", self.path("both"), "--grid", both)
+        self.assert_fails(refused, "cannot")
+        self.scree("detect", capture, "--grid", "-", code=2)
+        self.scree("detect", capture, "--viewpoint", "1", "2", "3", code=2)
+        self.scree("evaluate", truth, lists)
+
+    def test_a_picture_needs_a_list_of_its_time(self):
+        capture, lists = self.simulate(1), self.path("lists.jsonl")
+        self.scree("detect", capture, "--out", lists)
+        with open(lists) as file:
+            last = json.loads(file.read().splitlines()[-1])
+        for seconds, code in [(0.05, 0), (5, 1), (3600, 0)]:
+            moved = {**last, "stamp_ns": last["stamp_ns"] + int(seconds * 1e9)}
+            other = self.write("moved.jsonl", json.dumps(moved) + "\n")
+            self.scree("picture", capture, other, "--out", self.path("p.png"), "--force", code=code)
+
     def test_the_nearest_command_and_option_are_named(self):
         self.assertIn('no command "detct"; did you mean "detect"?', self.scree("detct", code=2).stderr)
         said = self.scree("detect", "/tmp", "--otu", "x", code=2).stderr

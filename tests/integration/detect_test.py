@@ -254,6 +254,13 @@ class DetectTest(ProgramTest):
         result = self.run_to_end(SCREE, "detect", self.path("dark.pcap"))
         self.assert_fails(result, "dark.pcap: nothing was looked at")
 
+    def test_a_capture_that_has_lost_its_times_is_refused(self):
+        records = ((10**18, frame(data_packet(number), 2368)) for number in range(400))
+        write_pcap(self.path("timeless.pcap"), records)
+        for command in (["detect"], ["decode", "--sensor", "lidar"]):
+            result = self.run_to_end(SCREE, *command, self.path("timeless.pcap"))
+            self.assert_fails(result, "timeless.pcap: all packets arrived at one time")
+
     def test_failures_are_one_sentence_and_exit_1(self):
         garbled = self.path("garbled.pcd")
         with open(garbled, "wb") as file:
@@ -278,6 +285,7 @@ class DetectTest(ProgramTest):
         self.scree("detect", code=2)
         self.scree("detect", self.path("missing.pcd"), code=2)
         self.scree("detect", "--no-such-option", code=2)
+        self.scree("detect", self.simulated_cloud(), "--viewpoint", "nan", "2", "3", code=2)
 
     def test_recordings_give_a_list_a_sweep(self):
         sweeps = {

@@ -1,8 +1,11 @@
+#include <algorithm>
+#include <cctype>
 #include <cstdio>
 #include <exception>
 #include <new>
 #include <sstream>
 #include <string>
+#include <string_view>
 
 #include "commands.hpp"
 #include "common/usage_error.hpp"
@@ -35,6 +38,17 @@ void add_all(CLI::App& app) {
   scree::cli::add_config(app);
 }
 
+/// What no number in a command line can be: not even the ranges of options refuse it.
+bool is_nan(std::string_view word) {
+  if (const auto equals = word.find('='); equals != std::string_view::npos) {
+    word.remove_prefix(equals + 1);
+  }
+  if (word.starts_with('-') || word.starts_with('+')) word.remove_prefix(1);
+  std::string lower(word);
+  for (char& letter : lower) letter = static_cast<char>(std::tolower(letter));
+  return lower == "nan";
+}
+
 /// A configuration may have many mistakes: a line each.
 int failed(const std::string& reason) {
   std::istringstream lines(reason);
@@ -52,6 +66,10 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", SCREE_VERSION);
   app.require_subcommand(1);
   add_all(app);
+  if (const auto* const nan = std::find_if(argv + 1, argv + argc, is_nan); nan != argv + argc) {
+    std::fprintf(stderr, "scree: %s is no number (a file of that name is ./nan)\n", *nan);
+    return kUsage;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

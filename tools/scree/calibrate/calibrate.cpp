@@ -123,7 +123,7 @@ void write_text(const std::string& file, const std::string& text) {
 }
 
 void calibrate_capture(const CalibrateOptions& options) {
-  options.outputs.require_free({options.out, options.picture});
+  options.outputs.require_free({options.out, options.picture}, {options.capture, options.config});
   if (!options.picture.empty()) require_cairo();
   const Settings set = capture_settings(options.capture, options.config);
   const DriveCapture drive = read_drive(options.capture, options.config, set);

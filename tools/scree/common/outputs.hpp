@@ -13,8 +13,11 @@ public:
   bool are_forced() const { return force_; }
 
   /// Before the work begins: throws Failure where one of the files is there already, or its folder
-  /// is not. An empty name, a device and a pipe are always free.
-  void require_free(std::initializer_list<std::filesystem::path> files) const;
+  /// is not; with --force, too, where two of them are one file, or one of them is read. An empty
+  /// name, a device and a pipe are always free.
+  /// @param read files, or folders of captures
+  void require_free(std::initializer_list<std::filesystem::path> files,
+                    std::initializer_list<std::filesystem::path> read = {}) const;
   /// The same for a folder that gets many files: it may be there, but empty.
   void require_empty(const std::filesystem::path& folder) const;
 

@@ -143,6 +143,7 @@ Json describe(const LidarCapture& capture, const LidarStream& stream, const Swee
       {"firmware", velodyne::sentence(stream.firmware())},
       {"broken_off", capture.broken_off()},
       {"two_senders", capture.two_senders()},
+      {"lost_times", capture.lost_times(stream)},
   };
 }
 
@@ -190,7 +191,7 @@ void print_table(const Json& info) {
   }
   row("other frames", listed(info["frames"], "-"));
   for (const Json& mistake : info["settings"]) row("settings", mistake);
-  for (const char* key : {"firmware", "broken_off", "two_senders"}) {
+  for (const char* key : {"firmware", "broken_off", "two_senders", "lost_times"}) {
     if (const std::string note = info[key]; !note.empty()) row("note", note);
   }
 }

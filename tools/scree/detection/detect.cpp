@@ -188,9 +188,17 @@ void add_detect(CLI::App& app) {
       ->expected(3);
   options->outputs.add_to(*command);
   command->callback([options] {
-    options->outputs.require_free({options->out, options->grid});
+    options->outputs.require_free({options->out, options->grid}, {options->input, options->config});
+    const bool is_printed = options->out.empty() || options->out == "-";
+    if (options->grid == "-" && is_printed) {
+      throw CLI::ValidationError("--grid", "standard output has the lists: name a file for one");
+    }
+    const bool is_cloud = is_pcd(options->input) || options->input.extension() == ".pcd";
+    if (!options->viewpoint.empty() && !is_cloud) {
+      throw CLI::ValidationError("--viewpoint", "is for a cloud");
+    }
     options->outputs.require_empty(options->stages);
-    if (is_pcd(options->input) || options->input.extension() == ".pcd") {
+    if (is_cloud) {
       detect_in_cloud(*options);
     } else {
       detect_in_capture(*options);

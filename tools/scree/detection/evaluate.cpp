@@ -59,7 +59,7 @@ private:
 };
 
 void evaluate(const EvaluateOptions& options) {
-  options.outputs.require_free({options.matches});
+  for (const auto& file : options.files) options.outputs.require_free({options.matches}, {file});
   Scorer scorer;
   MatchFile matches(options.matches);
   for (std::size_t i = 0; i + 1 < options.files.size(); i += 2) {

@@ -89,15 +89,22 @@ FixedVector<Obstacle> in_base(const ObstacleList& list, const Eigen::Vector3d& o
   return obstacles;
 }
 
-/// The list of this sweep; the last one where the lists are a live daemon's, whose times are
-/// others.
+/// The list of this sweep. A live daemon's lists have other times where a capture was replayed to
+/// it: then it is the last one.
 const ObstacleList& list_of(const std::vector<ObstacleList>& lists, std::int64_t stamp_ns) {
-  const auto found = std::ranges::find(lists, stamp_ns, &ObstacleList::stamp_ns);
-  return found != lists.end() ? *found : lists.back();
+  constexpr std::int64_t kSameNs = 60'000'000, kMinuteNs = 60'000'000'000;
+  const auto apart_ns = [&](const ObstacleList& list) {
+    return std::abs(static_cast<double>(list.stamp_ns) - static_cast<double>(stamp_ns));
+  };
+  const auto nearest = std::ranges::min_element(lists, {}, apart_ns);
+  if (apart_ns(*nearest) <= kSameNs) return *nearest;
+  if (apart_ns(*nearest) > kMinuteNs) return lists.back();
+  throw Failure(fmt::format("no list is of the ground's time: the nearest is {:.1f} s away",
+                            apart_ns(*nearest) * 1e-9));
 }
 
 void picture(const PictureOptions& options) {
-  options.outputs.require_free({options.out});
+  options.outputs.require_free({options.out}, {options.input, options.detections, options.config});
   require_cairo();
   const auto lists = read_detections(options.detections);
   if (lists.empty()) throw Failure(options.detections + " holds no obstacle list");

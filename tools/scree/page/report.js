@@ -70,18 +70,20 @@ class Report {
   }
 
   key(event) {
+    if (event.ctrlKey || event.altKey || event.metaKey) return;
     if (['INPUT', 'SELECT'].includes(event.target.tagName) && event.target.type !== 'checkbox') return;
     const act = {
       ArrowLeft: () => this.show(this.now - (event.shiftKey ? 10 : 1)),
       ArrowRight: () => this.show(this.now + (event.shiftKey ? 10 : 1)),
       Home: () => this.show(0),
       End: () => this.show(this.report.lists.length - 1),
-      ' ': () => event.target.tagName !== 'BUTTON' && this.play(!this.playing),
+      ' ': () => this.play(!this.playing),
       0: () => document.getElementById('fit').click(),
       f: () => document.getElementById('follow').click(),
     }[event.key];
-    if (!act) return;
-    if (event.target.tagName !== 'BUTTON') event.preventDefault();
+    const isPressed = event.key === ' ' && ['BUTTON', 'INPUT'].includes(event.target.tagName);
+    if (!act || isPressed) return;
+    event.preventDefault();
     act();
   }
 

@@ -34,7 +34,8 @@ fs::path truth_file(const ReportOptions& options) {
 }
 
 void report(const ReportOptions& options) {
-  options.outputs.require_free({options.out});
+  options.outputs.require_free({options.out},
+                               {options.input, options.config, options.grid, options.truth});
   if (is_pcd(options.input)) {
     throw Failure(options.input.string() + " is one cloud and no drive: `scree picture` draws it");
   }
