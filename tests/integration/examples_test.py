@@ -82,6 +82,11 @@ class ExamplesTest(LiveDaemonTest):
         say("drive slowly")
         walker.center, walker.kind = [10, 7, 0], walker.NEGATIVE
         say("stop: a hole")
+        # A kerb that reaches into the way, while its middle lies beside it.
+        walker.center, walker.extent, walker.kind = [13, 7, 0], [3, 0.3, 0.2], walker.POSITIVE
+        say("drive slowly")
+        walker.center = [11.2, 7, 0]
+        say("stop: a rock")
         sender.messages = {"SCREE_HEALTH": health, "SCREE_GRID": grid}
         say("stop: the lists are stale")
         health.state, health.reason = health.BLIND, "no packets"

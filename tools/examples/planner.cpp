@@ -33,9 +33,18 @@ struct Planner {
     heard = Clock::now();
     obstacle.clear();
     for (const scree::obstacle_t& it : list->obstacles)
-      for (const double t : {0.0, 0.5, 1.0}) {  // seconds: where it is, and where it goes
-        const auto place =
-            in_base(*list, it.center[0] + t * it.velocity[0], it.center[1] + t * it.velocity[1]);
+      for (const double t : {0.0, 0.5, 1.0}) look(*list, it, t);
+  }
+  /// Looks all over the box of an obstacle as it will be in t seconds, at most 0.2 m apart.
+  void look(const scree::obstacle_list_t& list, const scree::obstacle_t& it, double t) {
+    const double c = std::cos(it.yaw), s = std::sin(it.yaw);
+    const double along = std::ceil(it.extent[0] / 0.2) + 1,
+                 across = std::ceil(it.extent[1] / 0.2) + 1;
+    for (double i = 0; i <= along; ++i)
+      for (double k = 0; k <= across; ++k) {
+        const double u = (i / along - 0.5) * it.extent[0], v = (k / across - 0.5) * it.extent[1];
+        const auto place = in_base(list, it.center[0] + c * u - s * v + t * it.velocity[0],
+                                   it.center[1] + s * u + c * v + t * it.velocity[1]);
         if (!is_in_the_way(place)) continue;
         char text[80];
         std::snprintf(text, sizeof text, "a %s at %.1f %.1f",
