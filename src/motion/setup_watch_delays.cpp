@@ -26,7 +26,7 @@ SetupWatch::DelayFit SetupWatch::Lags::fit(double noise) const {
   DelayFit fit;
   double scale = 0;
   for (int round = 0; round < kRounds; ++round) {
-    double information = 0, sum = 0, all = 0, left = 0;
+    double information = 0, sum = 0, all = 0;
     std::array<double, kMost> errors{};
     for (std::size_t i = 0; i < count_; ++i) {
       const double error = behind_[i] - fit.delay * gain_[i];
@@ -39,7 +39,6 @@ SetupWatch::DelayFit SetupWatch::Lags::fit(double noise) const {
     fit.delay = sum / information;
     for (std::size_t i = 0; i < count_; ++i) {
       errors[i] = std::abs(behind_[i] - fit.delay * gain_[i]);
-      left += errors[i] * errors[i];
     }
     const auto middle = errors.begin() + count_ / 2;
     std::nth_element(errors.begin(), middle, errors.begin() + count_);
@@ -79,8 +78,9 @@ SetupWatch::Verdict SetupWatch::judge_imu_delay() const {
 }
 
 SetupWatch::Verdict SetupWatch::judge_encoder_delay(const WheelFit& wheel) const {
-  constexpr double kNoise = 0.015;  // metres
-  if (wheel.windows < kFewestWindows || std::abs(wheel.by_way - 1) > 0.2) return {};
+  constexpr double kNoise = 0.015;   // metres
+  constexpr double kScaleOff = 0.2;  // the scale must be right first
+  if (wheel.windows < kFewestWindows || std::abs(wheel.by_way - 1) > kScaleOff) return {};
   Lags lags;
   for (const Seen& seen : windows()) {
     if (!seen.binds || !seen.has_wheel) continue;
