@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import shutil
 import struct
 from collections import Counter
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field
 from math import asin, atan2, degrees, isfinite
 from pathlib import Path
 from typing import Any
 
-from rosbags.highlevel import AnyReader, AnyReaderError
+from rosbags.highlevel import AnyReader
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from .capture_files import LINKTYPE_ETHERNET, LINKTYPE_USER0, PcapWriter, can_line, lidar_frame, xsens_message
@@ -19,6 +21,7 @@ from .records import Pose, Vector
 
 DATA_PACKET = 1206  # bytes
 PACKET_NS = 1_327_104  # from one packet of a VLP-16 to the next
+MODE_AT, DUAL = 1204, 0x39  # factory byte: a dual-return packet has half as many shots, each twice
 CAN_ID, SPEED_SCALE = 0x1A0, 1e-4
 NEAR_NS = 5_000_000_000
 IMU = "sensor_msgs/msg/Imu"
@@ -65,8 +68,15 @@ def packets_of(message: Any, arrival_ns: int) -> Iterator[tuple[int, bytes]]:
     """
     packets = [(_stamp(it.stamp), bytes(it.data)) for it in message.packets]
     is_near = all(abs(stamp - arrival_ns) < NEAR_NS for stamp, _ in packets)
-    for i, (stamp, data) in enumerate(packets):
-        yield (stamp if is_near else arrival_ns - (len(packets) - 1 - i) * PACKET_NS), data
+    time_ns = arrival_ns - sum(_duration(data) for _, data in packets)
+    for stamp, data in packets:
+        time_ns += _duration(data)
+        yield (stamp if is_near else time_ns), data
+
+
+def _duration(packet: bytes) -> int:
+    is_dual = len(packet) == DATA_PACKET and packet[MODE_AT] == DUAL
+    return PACKET_NS // 2 if is_dual else PACKET_NS
 
 
 def speed_of(message: Any) -> float:
@@ -81,8 +91,11 @@ def _choose(reader: Any, kinds: tuple[str, ...], wanted: str | None, what: str) 
     """The topic as named, else the only one of its kind."""
     topics = sorted({it.topic for it in reader.connections if it.msgtype in kinds})
     if wanted is not None:
-        if wanted not in {it.topic for it in reader.connections}:
+        there = {it.topic: it.msgtype for it in reader.connections}
+        if wanted not in there:
             raise ReadError(f"the bag has no topic {wanted}")
+        if wanted not in topics:
+            raise ReadError(f"topic {wanted} is {there[wanted]}: it cannot be the {what}")
         return wanted
     if len(topics) > 1:
         raise ReadError(f"several topics could be the {what}: {', '.join(topics)}; name one")
@@ -94,7 +107,7 @@ def _packet_topic(reader: Any, wanted: str | None) -> str:
         {
             it.msgtype
             for it in reader.connections
-            if it.msgtype.rsplit("/", 1)[-1].endswith(("VelodyneScan", "Packets"))
+            if wanted or it.msgtype.rsplit("/", 1)[-1].endswith(("VelodyneScan", "Packets"))
         }
     )
     topic = _choose(reader, kinds, wanted, "lidar's packets")
@@ -116,19 +129,34 @@ def import_bag(
 ) -> Imported:
     """Writes a capture into a folder that is not there yet or empty. ReadError in one sentence."""
     bag, folder = Path(bag), Path(folder)
-    if folder.exists() and any(folder.iterdir()):
+    made = folder / ".new"  # what is in it moves up when all is there
+    was_there = folder.exists()
+    if was_there and any(it != made for it in folder.iterdir()):
         raise ReadError(f"{folder} is not empty")
+    if not bag.exists():
+        raise ReadError(f"there is no bag {bag}")
+    if bag.is_dir() and not (bag / "metadata.yaml").exists():
+        raise ReadError(f"{bag} is no bag of ROS 2: it has no metadata.yaml")
     try:
         with AnyReader([bag], default_typestore=_typestore()) as reader:
             lidar = _packet_topic(reader, packets_topic)
             imu = _choose(reader, (IMU,), imu_topic, "IMU")
             odometry = _choose(reader, ODOMETRY, odometry_topic, "wheel odometry")
-            folder.mkdir(parents=True, exist_ok=True)
-            return _Import(reader, folder, lidar, imu, odometry, base, model).run()
-    except FileNotFoundError as error:
-        raise ReadError(f"there is no bag {bag}") from error
-    except AnyReaderError as error:
-        raise ReadError(f"{bag}: {error}") from error
+            shutil.rmtree(made, ignore_errors=True)
+            made.mkdir(parents=True)
+            done = _Import(reader, made, lidar, imu, odometry, base, model).run()
+        for file in list(made.iterdir()):
+            file.rename(folder / file.name)
+        return done
+    except (ReadError, OSError):
+        raise
+    except Exception as error:  # over a broken bag rosbags throws its own errors and those of what it uses
+        raise ReadError(f"{bag} cannot be read: {' '.join(str(error).split())}") from error
+    finally:
+        shutil.rmtree(made, ignore_errors=True)
+        if not was_there:
+            with suppress(OSError):  # it is there where it has a capture
+                folder.rmdir()
 
 
 class _Import:
@@ -154,9 +182,8 @@ class _Import:
     def run(self) -> Imported:
         wanted = {*self.done.topics.values(), "/tf_static"}
         connections = [it for it in self.reader.connections if it.topic in wanted]
-        lidar = self.folder / "lidar.pcap"
         with (
-            PcapWriter(lidar, LINKTYPE_ETHERNET) as self.lidar_file,
+            PcapWriter(self.folder / "lidar.pcap", LINKTYPE_ETHERNET) as self.lidar_file,
             PcapWriter(self.folder / "imu.pcap", LINKTYPE_USER0) as self.imu_file,
             (self.folder / "can.log").open("w") as self.can_file,
         ):
@@ -166,13 +193,14 @@ class _Import:
             if count == 0:
                 (self.folder / name).unlink()
         if self.done.packets == 0:
-            lidar.unlink()
             raise ReadError(f"no message on {self.lidar} holds a packet of {DATA_PACKET} bytes")
         (self.folder / "scree.toml").write_text(self._config())
         return self.done
 
     def _take(self, connection: Any, arrival_ns: int, message: Any) -> None:
         if connection.topic == self.lidar:
+            if not hasattr(message, "packets"):
+                raise ReadError(f"topic {self.lidar} is {connection.msgtype}: it has no raw packets")
             self.frames.setdefault("lidar", message.header.frame_id if hasattr(message, "header") else "")
             self._take_packets(message, arrival_ns)
         elif connection.topic == self.imu:

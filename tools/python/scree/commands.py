@@ -6,23 +6,23 @@ import argparse
 import sys
 from pathlib import Path
 
-from .read import ReadError
+from .read import ReadError, sentence, shown
 
 
 def _export(options: argparse.Namespace) -> None:
     if not options.mcap and not options.parquet:
-        raise ReadError("nothing is asked for: --mcap FILE or --parquet DIR")
+        options.refuse("nothing is asked for: --mcap FILE or --parquet DIR")
     common = {"scree": options.scree, "config": options.config, "force": options.force}
     if options.mcap:
         from .mcap_export import export_mcap
 
         lists = export_mcap(options.source, options.mcap, with_cloud=not options.no_cloud, **common)
-        print(f"{options.mcap}: {lists} lists")
+        print(f"{shown(options.mcap)}: {lists} lists")
     if options.parquet:
         from .parquet_export import export_parquet
 
         rows = export_parquet(options.source, options.parquet, **common)
-        print(f"{options.parquet}: " + ", ".join(f"{name} {count}" for name, count in rows.items()))
+        print(f"{shown(options.parquet)}: " + ", ".join(f"{name} {count}" for name, count in rows.items()))
 
 
 def _import(options: argparse.Namespace) -> None:
@@ -37,7 +37,7 @@ def _import(options: argparse.Namespace) -> None:
         options.base,
         options.model,
     )
-    print(f"{options.folder}: {done.packets} packets, {done.imu} IMU messages, {done.odometry} speeds")
+    print(f"{shown(options.folder)}: {done.packets} packets, {done.imu} IMU messages, {done.odometry} speeds")
     for note in [*done.notes, *(f"left out: {count} {what}" for what, count in done.refused.items())]:
         print(f"scree-py: {note}", file=sys.stderr)
 
@@ -53,7 +53,7 @@ def _parser() -> argparse.ArgumentParser:
     export.add_argument("--config", metavar="FILE", help="configuration [that of the capture]")
     export.add_argument("--scree", metavar="PROGRAM", help="the command-line tool [scree on the path]")
     export.add_argument("--force", action="store_true", help="overwrite what is there")
-    export.set_defaults(run=_export)
+    export.set_defaults(run=_export, refuse=export.error)
     bag = commands.add_parser("import", help="a capture of a ROS 1 or ROS 2 bag or MCAP file")
     bag.add_argument("bag", type=Path)
     bag.add_argument("folder", type=Path, help="of the capture")
@@ -72,8 +72,8 @@ def main(arguments: list[str] | None = None) -> int:
     options = _parser().parse_args(arguments)
     try:
         options.run(options)
-    except ReadError as error:
-        print(f"scree-py: {error}", file=sys.stderr)
+    except (ReadError, OSError) as error:
+        print(f"scree-py: {sentence(error)}", file=sys.stderr)
         return 1
     except ImportError as error:
         extra = {"rosbags": "bags"}.get((error.name or "").split(".")[0], "export")

@@ -18,26 +18,47 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from .read import ReadError, find_scree
+from .read import ReadError, find_scree, run_scree
 
 Row = dict[str, Any]
 
 FORMAT = "1"  # of a result; another one makes every result anew
 BLOCK = 1 << 20
+PCAP = (".pcap", ".pcapng")
+LIDAR = {"lidar.pcap", "lidar.pcapng", "lidar.lcm"}
 
 
 def captures_in(place: str | Path) -> list[str]:
-    """The captures below a folder, or those that a text file lists, a path a line."""
+    """The captures below a folder, those that a text file lists, a path a line, or the one capture."""
     place = Path(place)
-    if place.is_file() and place.suffix not in (".pcap", ".pcapng"):
-        lines = (line.strip() for line in place.read_text().splitlines())
-        return [str((place.parent / line).resolve()) for line in lines if line and not line.startswith("#")]
     if not place.exists():
         raise ReadError(f"there is no {place}")
-    found = {
-        file.parent for name in ("lidar.pcap", "lidar.pcapng", "lidar.lcm") for file in place.rglob(name)
-    }
-    return sorted(str(folder.resolve()) for folder in found)
+    if place.is_dir():
+        return sorted(_captures_below(place))
+    if place.suffix in PCAP:
+        return [str(place.resolve())]
+    try:
+        lines = [line.strip() for line in place.read_text(encoding="utf-8").splitlines()]
+        return [str((place.parent / line).resolve()) for line in lines if line and not line.startswith("#")]
+    except ValueError as error:  # other text, or a zero in it
+        raise ReadError(f"{place} is no list of captures, a path a line in UTF-8") from error
+
+
+def _captures_below(place: Path) -> set[str]:
+    """Folders with lidar data under its name. A pcap of any other name is a capture by itself."""
+    found, seen = set(), set()
+    for name, folders, files in os.walk(place, followlinks=True):
+        folder = os.path.realpath(name)
+        if folder in seen:  # a link back
+            folders.clear()
+            continue
+        seen.add(folder)
+        if not LIDAR.isdisjoint(files):
+            found.add(folder)
+            continue
+        alone = (file for file in map(Path, files) if file.suffix in PCAP and file.stem != "imu")
+        found |= {os.path.realpath(folder / file) for file in alone}
+    return found
 
 
 def _hash_file(file: Path) -> str:
@@ -51,7 +72,7 @@ def _hash_file(file: Path) -> str:
 def _hash_files(files: list[Path], root: Path) -> str:
     digest = hashlib.sha256()
     for file in sorted(files):
-        digest.update(f"{file.relative_to(root)}\0{_hash_file(file)}\n".encode())
+        digest.update(os.fsencode(f"{file.relative_to(root)}\0{_hash_file(file)}\n"))
     return digest.hexdigest()
 
 
@@ -59,16 +80,36 @@ def content_of(capture: Path) -> str:
     """What the capture holds, truth and configuration too; the same wherever it lies."""
     if capture.is_file():
         return _hash_file(capture)
-    return _hash_files([file for file in capture.rglob("*") if file.is_file()], capture)
+    if not capture.exists():
+        raise ReadError(f"there is no {capture}")
+    files = [file for file in capture.rglob("*") if file.is_file()]
+    if not files:
+        raise ReadError(f"{capture} is empty")
+    return _hash_files(files, capture)
+
+
+def setting_of(config: str | Path | None) -> str:
+    """What a configuration says, with its drop-ins, and the profiles and networks that lie beside it."""
+    if not config:
+        return ""
+    file = Path(config)
+    beside = [
+        it
+        for name in ("map.toml", "sweep.toml", "cloud.toml", "network_*.txt")
+        for it in file.parent.glob(name)
+    ]
+    return _hash_files(list({file, *file.with_suffix(".d").glob("*.toml"), *beside}), file.parent)
 
 
 @lru_cache(maxsize=8)
 def _version_of(program: str, _changed: float) -> tuple[str, str]:
-    done = subprocess.run([program, "--version"], capture_output=True, text=True, check=True)
+    version = run_scree(program, "--version").strip()
+    if not version:
+        raise ReadError(f"{program} does not say its version")
     binary = Path(program).resolve()
     shipped = binary.parent.parent / "share" / "scree"
     files = [binary, *(file for file in shipped.glob("*") if file.suffix in (".toml", ".txt"))]
-    return done.stdout.strip(), _hash_files(files, binary.parent.parent)[:12]
+    return version, _hash_files(files, binary.parent.parent)[:12]
 
 
 def version_of(scree: str | None = None) -> str:
@@ -94,17 +135,23 @@ def process(
     @return `ok` says whether it worked, `reason` why not; `key` names the stored result
     """
     begin = time.monotonic()
-    row: Row = {"capture": str(capture), "ok": False, "reason": "", "key": "", "content": "", "version": ""}
+    own: Row = {"capture": str(capture), "program": "", "config": ""}  # the rest is that of the key
+    row: Row = {"ok": False, "reason": "", "key": "", "content": "", "setting": "", "version": ""}
     try:
+        own |= {
+            "program": os.path.abspath(find_scree(scree)),
+            "config": os.path.abspath(config) if config else "",
+        }
         row["version"] = version_of(scree)
         row["content"] = content_of(Path(capture))
-        setting = _hash_file(Path(config)) if config else ""
-        name = "\0".join((FORMAT, row["content"], setting, row["version"]))
+        row["setting"] = setting_of(config)
+        name = "\0".join((FORMAT, row["content"], row["setting"], row["version"]))
         row["key"] = hashlib.sha256(name.encode()).hexdigest()[:32]
         folder = Path(out) / "results" / row["key"]
         stored = load(folder)
         if stored is not None and (stored["ok"] or not retry_failed):
-            return {**stored, "capture": str(capture), "was_stored": True}
+            reason = stored["reason"].replace(stored["capture"], str(capture))
+            return {**stored, **own, "reason": reason, "was_stored": True}
         with tempfile.TemporaryDirectory(prefix="scree-fleet-") as work:
             try:
                 row |= _look(Path(capture), Path(work), find_scree(scree), config, timeout)
@@ -112,10 +159,11 @@ def process(
             except _WorkFailed as error:
                 row["reason"] = str(error)
             row["seconds_taken"] = time.monotonic() - begin
-            _store(row, Path(work), folder)
+            _store(row | own, Path(work), folder)
     except Exception as error:  # a row, whatever it is: thousands of others wait
-        row |= {"ok": False, "reason": f"{type(error).__name__}: {error}"}
-    return {**row, "was_stored": False}
+        kind = "" if isinstance(error, ReadError) else f"{type(error).__name__}: "
+        row |= {"ok": False, "reason": f"{kind}{error}"}
+    return {**row, **own, "was_stored": False}
 
 
 class _WorkFailed(Exception):
@@ -125,7 +173,12 @@ class _WorkFailed(Exception):
 def _run(timeout: float, *command: str | Path) -> str:
     try:
         done = subprocess.run(
-            list(map(str, command)), capture_output=True, text=True, timeout=timeout, check=False
+            list(map(str, command)),
+            capture_output=True,
+            text=True,
+            errors="backslashreplace",
+            timeout=timeout,
+            check=False,
         )
     except subprocess.TimeoutExpired as error:
         raise _WorkFailed(f"scree {command[1]} took longer than {timeout:g} s") from error

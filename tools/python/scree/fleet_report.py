@@ -9,10 +9,11 @@ from importlib.resources import files
 from math import inf
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 import pyarrow.parquet as pq
 
-from .fleet import Row
+from .fleet import Row, setting_of
 from .read import ReadError, run_scree
 
 CHANGE = 0.005  # of F1: below it nothing has changed
@@ -34,26 +35,32 @@ def rows_of(out: str | Path) -> list[Row]:
     return rows
 
 
-def badness(row: Row) -> tuple[bool, float, float]:
+def is_scored(row: Row) -> bool:
+    """Whether it has a score that counts: one of too small a part of the drive does not."""
+    return row["ok"] and row["f1"] is not None and row["counts"] is not False
+
+
+def badness(row: Row) -> tuple[bool, bool, float, float]:
     """Sorts the worst first."""
-    f1 = row["f1"] if row["f1"] is not None else inf
-    return bool(row["ok"]), f1, -(row["blind"] or 0.0)
+    f1 = row["f1"] if is_scored(row) else inf
+    return bool(row["ok"]), row["counts"] is not False, f1, -(row["blind"] or 0.0)
 
 
 def compare(before: list[Row], now: list[Row]) -> Comparison:
     """Drives of the same content; the change of F1, the largest first."""
-    old = {row["content"]: row for row in before if row["ok"] and row["f1"] is not None}
-    new = {row["content"]: row for row in now if row["ok"] and row["f1"] is not None}
-    pairs = [(old[content], row) for content, row in new.items() if content in old]
+    old = {row["content"]: row for row in before if is_scored(row)}
+    pairs = [(old[row["content"]], row) for row in now if is_scored(row) and row["content"] in old]
     change = {id(pair): pair[1]["f1"] - pair[0]["f1"] for pair in pairs}
     better = sorted((pair for pair in pairs if change[id(pair)] > CHANGE), key=lambda pair: -change[id(pair)])
     worse = sorted((pair for pair in pairs if change[id(pair)] < -CHANGE), key=lambda pair: change[id(pair)])
-    contents = {row["content"] for row in (*before, *now)}
-    return Comparison(better, worse, len(pairs) - len(better) - len(worse), len(contents) - len(pairs))
+    drives = {row["content"] or row["capture"] for row in (*before, *now)}
+    only_one = len(drives - {row["content"] for _, row in pairs})
+    return Comparison(better, worse, len(pairs) - len(better) - len(worse), only_one)
 
 
 def total_f1(rows: list[Row]) -> float | None:
-    """Of all lists of all drives together, as `scree evaluate` sums them."""
+    """Of all lists of all drives with a score that counts, as `scree evaluate` sums them."""
+    rows = [row for row in rows if is_scored(row)]
     right, false, missed = (
         sum(row[name] or 0 for row in rows)
         for name in ("true_positives", "false_positives", "false_negatives")
@@ -76,19 +83,22 @@ def write_report(
     parts = {
         "about": escape(f"Scree {', '.join(versions) or 'of no version'}"),
         "figures": _figures(rows),
-        "histogram": _histogram([row["f1"] for row in rows if row["f1"] is not None]),
+        "histogram": _histogram([row["f1"] for row in rows if is_scored(row)]),
         "comparison": _comparison(compare(rows_of(against), rows), rows_of(against), rows) if against else "",
         "drives": _drives(rows, links),
     }
-    text = files("scree").joinpath("fleet_page.html").read_text()
+    text = files("scree").joinpath("fleet_page.html").read_text(encoding="utf-8")
     for name, part in parts.items():
         text = text.replace("{{" + name + "}}", part)
-    page.write_text(text)
+    page.write_text(text, encoding="utf-8")
     return len(links)
 
 
 def _own_reports(rows: list[Row], page: Path, scree: str | None) -> dict[str, str]:
-    """The report of each drive whose capture is still there, by key: its path from the page."""
+    """The report of each drive, by key: its path from the page.
+
+    There is none where the capture or the configuration of the run is not there any more.
+    """
     folder = page.with_name(f"{page.stem}_drives")
     links = {}
     for row in rows:
@@ -98,10 +108,14 @@ def _own_reports(rows: list[Row], page: Path, scree: str | None) -> dict[str, st
             if not capture.exists():
                 continue
             folder.mkdir(parents=True, exist_ok=True)
-            truth = ["--truth"] if row["has_truth"] else []
+            config = row.get("config")
+            options = ["--config", config] if config else []
+            options += ["--truth"] if row["has_truth"] else []
             try:
-                run_scree(scree, "report", capture, "--out", report, *truth)
-            except ReadError:
+                if config and setting_of(config) != row["setting"]:
+                    continue
+                run_scree(scree or row.get("program"), "report", capture, "--out", report, *options)
+            except (ReadError, OSError):
                 continue
         links[row["key"]] = os.path.relpath(report, page.parent)
     return links
@@ -159,15 +173,16 @@ def _drives(rows: list[Row], links: dict[str, str]) -> str:
     for row in rows:
         name = escape("/".join(Path(row["capture"]).parts[-2:]))
         if link := links.get(row["key"]):
-            name = f'<a href="{escape(link)}">{name}</a>'
+            name = f'<a href="{quote(os.fsencode(link))}">{name}</a>'
         if not row["ok"]:
             words = f'<td class="words" colspan="8">failed: {escape(row["reason"])}</td>'
             lines.append(f'<tr class="failed"><td title="{escape(row["capture"])}">{name}</td>{words}</tr>')
             continue
+        if row["counts"] is False:
+            name += f"<br>covers {int(100 * (row['coverage'] or 0))} % of the drive: does not count"
+        scores = (row[score] if is_scored(row) else None for score in ("f1", "precision", "recall"))
         numbers = [
-            _shown(row["f1"]),
-            _shown(row["precision"]),
-            _shown(row["recall"]),
+            *map(_shown, scores),
             row["lists"],
             row["obstacles"],
             _shown(row["way"], 1),

@@ -11,6 +11,7 @@ from distributed import Client, LocalCluster, as_completed
 
 from .fleet import Row, process, sweep_up
 from .fleet_tables import write_tables
+from .read import ReadError
 
 
 class Progress:
@@ -57,7 +58,11 @@ def run(
     if client is not None:
         return _run(client, captures, out, options)
     if scheduler is not None:
-        with Client(scheduler) as connected:
+        try:
+            connected = Client(scheduler)
+        except Exception as error:  # of what it throws, some has no common kind
+            raise ReadError(f"the scheduler {scheduler} cannot be reached: {error}") from error
+        with connected:
             return _run(connected, captures, out, options)
     with (
         LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None) as cluster,

@@ -13,7 +13,7 @@ import pyarrow.parquet as pq
 
 from .fleet import Row
 from .parquet_export import LISTS, OBSTACLES, list_row, obstacle_rows
-from .read import read
+from .read import read, shown
 from .records import ObstacleList
 
 KEY = pa.field("key", pa.string())
@@ -54,6 +54,9 @@ CAPTURES = pa.schema(
         ("capture", pa.string()),
         ("content", pa.string()),
         ("version", pa.string()),
+        ("program", pa.string()),
+        ("config", pa.string()),
+        ("setting", pa.string()),
         ("ok", pa.bool_()),
         ("reason", pa.string()),
         ("has_truth", pa.bool_()),
@@ -76,17 +79,24 @@ MATCHES = pa.schema(
 
 
 def write_tables(out: str | Path, rows: Iterable[Row]) -> None:
-    """Writes out/captures.parquet and so on of these rows, each file at once. A result stands once."""
+    """Writes out/captures.parquet and so on of these rows, each file at once.
+
+    Each capture has its row. Those of the same content share a result, which stands once.
+    """
     out = Path(out)
-    once = list({row["key"] or row["capture"]: row for row in rows}.values())
-    stored = [row for row in once if row["ok"]]
-    _write(out / "captures.parquet", CAPTURES, [once])
+    once = list({row["capture"]: row for row in rows}.values())
+    stored = list({row["key"]: row for row in once if row["ok"]}.values())
+    _write(out / "captures.parquet", CAPTURES, [[_shown(row) for row in once]])
     for name, schema, parts_of in (
         ("lists", LISTS.insert(0, KEY), _lists),
         ("obstacles", OBSTACLES.insert(0, KEY), _obstacles),
         ("matches", MATCHES, _matches),
     ):
         _write(out / f"{name}.parquet", schema, _parts(out, stored, parts_of))
+
+
+def _shown(row: Row) -> Row:
+    return {name: shown(value) if isinstance(value, str) else value for name, value in row.items()}
 
 
 def _parts(out: Path, rows: list[Row], of: Callable[[Path], list[Row]]) -> Iterator[list[Row]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import tomllib
 from collections.abc import Iterator
@@ -14,7 +15,7 @@ import foxglove
 from foxglove import channels as fc
 from foxglove import messages as fm
 
-from .read import ReadError, Record, find_scree, is_capture, read
+from .read import ReadError, Record, find_scree, is_capture, read, run_scree
 from .records import Grid, Obstacle, ObstacleList, Pose
 
 BLUE, ORANGE, PURPLE = (0.0, 0.447, 0.698), (0.835, 0.369, 0.0), (0.63, 0.23, 0.47)
@@ -135,7 +136,9 @@ def _grid(grid: Grid) -> Any:
     )
 
 
-def clouds(capture: Path, stamps: list[int], scree: str | None) -> Iterator[tuple[int, bytes]]:
+def clouds(
+    capture: Path, stamps: list[int], scree: str | None, config: str | Path | None = None
+) -> Iterator[tuple[int, bytes]]:
     """The lidar's returns until each stamp since the one before: x, y, z, reflectivity as float32.
 
     They are in `lidar`, each seen from where the lidar was at its time.
@@ -144,9 +147,13 @@ def clouds(capture: Path, stamps: list[int], scree: str | None) -> Iterator[tupl
     from pyarrow import csv
 
     command = [find_scree(scree), "decode", str(capture), "--sensor", "lidar"]
+    command += ["--config", str(config)] if config else []
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as process:
         columns = ["t_ns", "x", "y", "z", "reflectivity"]
-        rows = csv.open_csv(process.stdout, convert_options=csv.ConvertOptions(include_columns=columns))
+        try:
+            rows = csv.open_csv(process.stdout, convert_options=csv.ConvertOptions(include_columns=columns))
+        except ValueError as error:
+            raise ReadError(f"{capture}: scree decode gives no returns: {error}") from error
         rest = np.empty((0, 5))
         at = 0
         for batch in rows:
@@ -162,12 +169,14 @@ def clouds(capture: Path, stamps: list[int], scree: str | None) -> Iterator[tupl
             yield stamps[at], rest[rest[:, 0] <= stamps[at], 1:].astype("<f4").tobytes()
 
 
-def mount_of(capture: Path, config: str | Path | None) -> Pose:
-    """The lidar in `base`, of the configuration."""
+def mount_of(capture: Path, config: str | Path | None, scree: str | None = None) -> Pose:
+    """The lidar in `base`, of the configuration with its drop-ins."""
     file = Path(config) if config else capture / "scree.toml"
-    lidar = tomllib.loads(file.read_text()).get("lidar", {}) if file.exists() else {}
-    x, y, z = lidar.get("translation", (0.0, 0.0, 0.0))
-    roll, pitch, yaw = (radians(angle) / 2 for angle in lidar.get("rpy_deg", (0.0, 0.0, 0.0)))
+    if not config and not file.exists():
+        return Pose()
+    lidar = tomllib.loads(run_scree(scree, "config", "--config", file, "--all"))["lidar"]
+    x, y, z = lidar["translation"]
+    roll, pitch, yaw = (radians(angle) / 2 for angle in lidar["rpy_deg"])
     (cr, sr), (cp, sp), (cy, sy) = ((cos(half), sin(half)) for half in (roll, pitch, yaw))
     q = (
         cr * cp * cy + sr * sp * sy,
@@ -230,21 +239,37 @@ def export_mcap(
 
     @return how many lists it has
     """
-    source = Path(source)
-    if Path(file).exists() and not force:
+    source, file = Path(source), Path(file)
+    if file.exists() and not force:
         raise ReadError(f"{file} is there already: --force overwrites it")
+    if file.is_dir():
+        raise ReadError(f"{file} is a folder")
+    fresh = file.with_name(file.name + ".new")
+    fresh.touch()  # foxglove's error would not name the file
+    try:
+        count = _write(source, fresh, scree, config, with_cloud)
+        os.replace(fresh, file)
+    finally:
+        fresh.unlink(missing_ok=True)
+    return count
+
+
+def _write(source: Path, file: Path, scree: str | None, config: str | Path | None, with_cloud: bool) -> int:
     stamps = []
     context = foxglove.Context()
-    with foxglove.open_mcap(str(file), allow_overwrite=force, context=context):
+    with foxglove.open_mcap(str(file), allow_overwrite=True, context=context):
         writer = _Writer(context)
         for record in read(source, scree, config):
-            writer.write(record)
+            try:
+                writer.write(record)
+            except (OverflowError, TypeError, ValueError) as error:
+                raise ReadError(f"{source}: a record does not fit into MCAP: {error}") from error
             if isinstance(record, ObstacleList):
                 stamps.append(record.stamp_ns)
         if with_cloud and is_capture(source) and stamps:
-            mount = _transform(stamps[0], "base", "lidar", mount_of(source, config))
+            mount = _transform(stamps[0], "base", "lidar", mount_of(source, config, scree))
             writer.poses.log(fm.FrameTransforms(transforms=[mount]), log_time=stamps[0])
-            for stamp_ns, data in clouds(source, stamps, scree):
+            for stamp_ns, data in clouds(source, stamps, scree, config):
                 writer.write_cloud(stamp_ns, data)
     if not stamps:
         raise ReadError(f"{source} holds no list")

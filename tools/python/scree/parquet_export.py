@@ -192,13 +192,17 @@ def export_parquet(
             health.append(health_row(record))
     if not lists and not health:
         raise ReadError(f"{source} holds neither lists nor health")
-    folder.mkdir(parents=True, exist_ok=True)
-    tables = {
+    parts = {
         "lists": (lists, LISTS),
         "obstacles": (obstacles, OBSTACLES),
         "tracks": (track_rows(obstacles), TRACKS),
         "health": (health, HEALTH),
     }
-    for name, (rows, schema) in tables.items():
-        pq.write_table(pa.Table.from_pylist(rows, schema=schema), folder / f"{name}.parquet")
-    return {name: len(rows) for name, (rows, _) in tables.items()}
+    try:
+        tables = {name: pa.Table.from_pylist(rows, schema=schema) for name, (rows, schema) in parts.items()}
+    except (pa.ArrowException, OverflowError, TypeError) as error:
+        raise ReadError(f"{source}: a record does not fit into the tables: {error}") from error
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, table in tables.items():
+        pq.write_table(table, folder / f"{name}.parquet")
+    return {name: len(table) for name, table in tables.items()}

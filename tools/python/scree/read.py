@@ -18,11 +18,25 @@ Health = dict[str, Any]  # as `scree status --json` prints it
 Record = ObstacleList | Grid | Health
 
 _LOG_MAGIC = bytes.fromhex("eda1da01")
+_MOST_NS = 2**32 * 1_000_000_000  # MCAP counts seconds in 32 bits
+_WRONG = (ValueError, KeyError, TypeError, AttributeError, OverflowError, RuntimeError)  # what a line can do
 _STATES = ("never seen", "ok", "silent", "wrong data", "slow")
 
 
 class ReadError(Exception):
     """One sentence for the person who has to mend it."""
+
+
+def sentence(error: Exception) -> str:
+    """The error for a person."""
+    if isinstance(error, OSError) and error.filename and error.strerror:
+        return shown(f"{error.filename}: {error.strerror}")
+    return shown(str(error))
+
+
+def shown(text: str | Path) -> str:
+    """Text that any file takes: a byte of a name that is not UTF-8 becomes \\udcNN."""
+    return str(text).encode(errors="backslashreplace").decode()
 
 
 def find_scree(scree: str | None = None) -> str:
@@ -37,11 +51,10 @@ def find_scree(scree: str | None = None) -> str:
 
 def run_scree(scree: str | None, *arguments: str | Path) -> str:
     """What it printed. ReadError with its last sentence where it failed."""
-    done = subprocess.run(
-        [find_scree(scree), *map(str, arguments)], capture_output=True, text=True, check=False
-    )
+    command = [find_scree(scree), *map(str, arguments)]
+    done = subprocess.run(command, capture_output=True, text=True, errors="backslashreplace", check=False)
     if done.returncode != 0:
-        lines = done.stderr.strip().splitlines() or [f"scree ended with {done.returncode}"]
+        lines = done.stderr.strip().splitlines() or [f"{command[0]} ended with {done.returncode}"]
         raise ReadError(lines[-1].removeprefix("scree: "))
     return done.stdout
 
@@ -90,15 +103,27 @@ def _read_capture(source: Path, scree: str | None, config: str | Path | None) ->
 
 
 def _read_lines(source: Path) -> Iterator[Record]:
-    with source.open() as file:
+    with source.open("rb") as file:
         for number, line in enumerate(file, 1):
             try:
-                yield _record_of(json.loads(line))
-            except (ValueError, KeyError, TypeError, StopIteration) as error:
-                raise ReadError(f"{source}:{number}: neither list nor grid nor health: {error}") from error
+                record = _stamped(_record_of(json.loads(line.decode())))
+            except _WRONG as error:
+                what = f"it has no {error}" if isinstance(error, KeyError) else error
+                raise ReadError(f"{source}:{number}: neither list nor grid nor health: {what}") from error
+            yield record
 
 
-def _record_of(record: dict[str, Any]) -> Record:
+def _stamped(record: Record) -> Record:
+    """The record where it has a time that all files take."""
+    stamp = record["stamp_ns"] if isinstance(record, dict) else record.stamp_ns
+    if not isinstance(stamp, int) or not 0 <= stamp < _MOST_NS:
+        raise ValueError(f"stamp_ns {stamp} is no time")
+    return record
+
+
+def _record_of(record: Any) -> Record:
+    if not isinstance(record, dict):
+        raise ValueError("it is no object")
     if "health" in record:
         return record
     return grid_of_json(record) if "states" in record else list_of_json(record)
@@ -110,11 +135,11 @@ def _read_log(source: Path) -> Iterator[Record]:
     for event in EventLog(str(source), "r"):
         try:
             if event.channel == "SCREE_OBSTACLES":
-                yield list_of_message(decode_list(event.data))
+                yield _stamped(list_of_message(decode_list(event.data)))
             elif event.channel == "SCREE_GRID":
-                yield grid_of_message(decode_grid(event.data))
+                yield _stamped(grid_of_message(decode_grid(event.data)))
             elif event.channel == "SCREE_HEALTH":
-                yield health_of_message(decode_health(event.data))
+                yield _stamped(health_of_message(decode_health(event.data)))
         except (ValueError, IndexError, OverflowError, StructError):
             continue  # of another version, or broken: as the C++ programs do, it is passed over
 

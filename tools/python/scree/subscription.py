@@ -37,7 +37,10 @@ class Subscription:
     """Listens in a thread of its own until close(). Use it as a context manager."""
 
     def __init__(self, url: str, stale_after: float, on_list: Callable[[ObstacleList], None] | None) -> None:
-        self._bus = lcm.LCM(url)
+        try:
+            self._bus = lcm.LCM(url)
+        except RuntimeError as error:
+            raise RuntimeError(f"LCM cannot be opened at {url}: {error}") from error
         self._stale_after, self._on_list = stale_after, on_list
         self._lock = threading.Lock()
         self._list: ObstacleList | None = None

@@ -1,14 +1,17 @@
 import json
+import shutil
 
 import pytest
 
-from conftest import BEGIN, STEP
+from conftest import BEGIN, STEP, line, rock
 from scree.commands import main
 from scree.read import read
 from scree.records import Grid, ObstacleList
 
 pytest.importorskip("foxglove")
 mcap_reader = pytest.importorskip("mcap.reader")
+from scree.mcap_export import mount_of  # noqa: E402
+
 pq = pytest.importorskip("pyarrow.parquet")
 
 
@@ -90,8 +93,58 @@ def test_nothing_is_overwritten_and_faults_are_one_sentence(lists, tmp_path, cap
     assert main(["export", str(lists), "--mcap", str(out)]) == 1
     assert "--force" in capsys.readouterr().err
     assert main(["export", str(lists), "--mcap", str(out), "--force"]) == 0
-    assert main(["export", str(lists)]) == 1
+    with pytest.raises(SystemExit, match="2"):
+        main(["export", str(lists)])
     empty = tmp_path / "empty.jsonl"
     empty.write_text("")
     assert main(["export", str(empty), "--parquet", str(tmp_path / "none")]) == 1
     assert "holds neither" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        b"\xff",
+        b"[]",
+        b"7",
+        b'{"health": "ok"}',
+        b'{"health": "ok", "stamp_ns": -1}',
+        json.dumps(line(0, [])).replace(str(BEGIN), "1e999").encode(),
+        json.dumps(line(0, []) | {"stamp_ns": 2**62}).encode(),
+        json.dumps(line(0, [rock(float("inf"))])).encode(),
+        b'{"stamp_ns": 1, "states": ["#"], "columns": 1, "rows": 1, "ground": []}',
+    ],
+)
+def test_a_wrong_line_is_named_and_leaves_nothing(wrong, lists, tmp_path, capsys):
+    lists.write_bytes(lists.read_bytes() + wrong + b"\n")
+    out = tmp_path / "out"
+    out.mkdir()
+    for target in (["--mcap", str(out / "drive.mcap")], ["--parquet", str(out / "tables")]):
+        assert main(["export", str(lists), *target]) == 1
+        assert f"{lists}:12: neither list" in capsys.readouterr().err
+    assert list(out.iterdir()) == []
+
+
+def test_what_no_file_takes_is_one_sentence(tmp_path, capsys):
+    lists = tmp_path / "lists.jsonl"
+    lists.write_text(json.dumps(line(0, [rock(2**70)])))
+    assert main(["export", str(lists), "--parquet", str(tmp_path / "tables")]) == 1
+    assert "does not fit" in capsys.readouterr().err
+    assert not (tmp_path / "tables").exists()
+
+
+def test_a_place_that_cannot_be_written_is_named(lists, tmp_path, capsys):
+    for target in (["--mcap", tmp_path / "none" / "drive.mcap"], ["--mcap", lists / "drive.mcap"],
+                   ["--mcap", tmp_path], ["--parquet", lists / "tables"]):  # fmt: skip
+        assert main(["export", str(lists), "--force", *map(str, target)]) == 1
+        assert str(target[1]).removesuffix("/drive.mcap") in capsys.readouterr().err
+
+
+def test_drop_ins_say_where_the_lidar_sits(capture, scree_program, tmp_path):
+    drive = shutil.copytree(capture, tmp_path / "drive")
+    (drive / "scree.d").mkdir()
+    for name, x in (("b", 2.0), ("a", 1.0)):
+        (drive / "scree.d" / f"{name}.toml").write_text(f"[lidar]\ntranslation = [{x}, 0.0, 0.0]\n")
+    assert mount_of(drive, None, scree_program).p == (2, 0, 0)
+    assert mount_of(capture, drive / "scree.toml", scree_program).p == (2, 0, 0)
+    assert mount_of(capture / "lidar.pcap", None, scree_program).p == (0, 0, 0)

@@ -27,15 +27,18 @@ if sys.argv[1] == "--version":
     sys.exit()
 command, capture = sys.argv[1:3]
 what = json.load(open(os.path.join(os.path.dirname(capture) if command == "evaluate" else capture, "what.json")))
-with open(os.environ["LOOKED"], "a") as log:
+with open(os.environ["LOOKED"], "a", errors="backslashreplace") as log:
     log.write(f"{{command}} {{capture}}\\n")
 time.sleep(what.get("sleep", 0))
 if command == what.get("fails"):
     print("scree: warning", file=sys.stderr)
-    print("scree: it is broken", file=sys.stderr)
+    print("scree: it is broken", capture if what.get("names") else "", file=sys.stderr)
     sys.exit(1)
 if command == "info":
     print(json.dumps({{"seconds": 5, "packets": 10, "lost": 1, "refused": {{}}, "sweeps": 2, "imu": None, "encoder": None}}))
+elif command == "report":
+    with open(sys.argv[sys.argv.index("--out") + 1], "w") as out:
+        out.write(" ".join(sys.argv))
 elif command == "detect":
     pose = {{"p": [0, 0, 0], "q": [1, 0, 0, 0]}}
     with open(sys.argv[sys.argv.index("--out") + 1], "w") as out:
@@ -45,7 +48,8 @@ else:
     right = what["right"]
     score = {{"true_positives": right, "false_positives": 10 - right, "false_negatives": 0, "precision": right / 10,
              "recall": 1.0, "f1": 2 * right / (10 + right)}}
-    print(json.dumps({{"coverage": 1, "counts": True, "all": score, "positive": score, "negative": score}}))
+    covered = what.get("covered", 1)
+    print(json.dumps({{"coverage": covered, "counts": covered >= 0.95, "all": score, "positive": score, "negative": score}}))
     with open(sys.argv[sys.argv.index("--matches") + 1], "w") as out:
         out.write(json.dumps({{"run": 0, "stamp_ns": 0, "right": [[4, 7, 2.5]], "missed": [[5, 3.5]], "invented": [[8, 1.5]]}}))
 """
@@ -130,6 +134,122 @@ def test_a_failure_is_a_row(pretender, tmp_path):
     assert not fleet.process(made_up(tmp_path, 3), tmp_path / "file", pretender)["ok"]
 
 
+def rows_and_page(tmp_path, captures, *arguments):
+    """What the tables and the page have after a run over them."""
+    out, page = tmp_path / "out", tmp_path / "page.html"
+    assert main(["run", str(captures), "--out", str(out), "--workers", "1", *arguments]) == 0
+    assert main(["report", str(out), str(page), "--force"]) == 0
+    return pq.read_table(out / "captures.parquet").to_pylist(), page.read_text(encoding="utf-8")
+
+
+def test_each_capture_has_its_own_row(pretender, tmp_path):
+    drives = tmp_path / "drives"
+    same = [made_up(drives / name, 1) for name in "ab"]
+    broken = [made_up(drives / name, 2, fails="info", names=True) for name in "ab"]
+    (drives / "empty").mkdir()
+    names = [*same, *broken, drives / "empty", drives / "gone1", drives / "gone2"]
+    (tmp_path / "list.txt").write_text("\n".join(map(str, names)))
+    rows, page = rows_and_page(tmp_path, tmp_path / "list.txt", "--scree", pretender)
+    assert [row["capture"] for row in rows] == list(map(str, names))
+    assert [row["ok"] for row in rows] == [True] * 2 + [False] * 5
+    for row in rows[2:]:
+        assert row["capture"] in row["reason"]
+        assert row["reason"] in page
+    assert rows[0]["key"] == rows[1]["key"]
+    assert len(pq.read_table(tmp_path / "out" / "lists.parquet")) == 3
+
+
+def test_a_name_that_is_not_utf_8_is_a_row(pretender, tmp_path):
+    drives = tmp_path / "drives"
+    made_up(drives, 1)
+    made_up(drives, 2).rename(drives / os.fsdecode(b"drive\xff"))
+    rows, page = rows_and_page(tmp_path, drives, "--scree", pretender)
+    assert [(Path(row["capture"]).name, row["ok"]) for row in rows] == [
+        ("drive001", True),
+        ("drive\\udcff", True),
+    ]
+    assert "drive\\udcff" in page
+
+
+def test_scores_of_a_part_of_the_drive_do_not_count(pretender, tmp_path):
+    drives = tmp_path / "drives"
+    made_up(drives, 1, right=5)
+    made_up(drives, 2, right=9, covered=0.9499)
+    _, page = rows_and_page(tmp_path, drives, "--scree", pretender)
+    assert "drive002</a><br>covers 94 % of the drive: does not count</td><td>–</td>" in page
+    assert page.index("drive002</a>") < page.index("drive001</a>")
+    assert "<b>0.667</b>F1 of all lists" in page
+    assert page.count("<rect") - page.count('height="0.0"') == 1
+
+
+def test_reports_are_of_the_run_and_their_links_lead_there(pretender, tmp_path):
+    drives, config = made_up(tmp_path / "drives", 1).parent, tmp_path / "robot.toml"
+    config.write_text("")
+    out, page = tmp_path / "out", tmp_path / "what? 100%#.html"
+    assert (
+        main(
+            [
+                "run",
+                str(drives),
+                "--out",
+                str(out),
+                "--workers",
+                "1",
+                "--scree",
+                pretender,
+                "--config",
+                str(config),
+            ]
+        )
+        == 0
+    )
+    assert main(["report", str(out), str(page)]) == 0
+    (report,) = (tmp_path / "what? 100%#_drives").iterdir()
+    assert report.read_text().startswith(pretender)
+    assert f"--config {config} --truth" in report.read_text()
+    assert f'href="what%3F%20100%25%23_drives/{report.name}"' in page.read_text()
+    report.unlink()
+    (tmp_path / "robot.d").mkdir()
+    (tmp_path / "robot.d" / "more.toml").write_text("")  # now it says something else
+    assert main(["report", str(out), str(page), "--force"]) == 0
+    assert "href" not in page.read_text()
+
+
+def test_captures_are_what_the_contract_calls_so(tmp_path):
+    drives, far = tmp_path / "drives", tmp_path / "far"
+    folder, linked = made_up(drives, 1), made_up(far, 2)
+    (folder / "imu.pcap").touch()
+    (drives / "link").symlink_to(linked)
+    (drives / "back").symlink_to(drives)
+    single = drives / "single" / "morning.pcapng"
+    single.parent.mkdir()
+    single.touch()
+    assert fleet.captures_in(drives) == sorted(map(str, (folder, linked, single)))
+    assert fleet.captures_in(single) == [str(single)]
+
+
+@pytest.mark.parametrize("wrong", ["--workers=0", "--timeout=0", "--timeout=nan", "--timeout=inf"])
+def test_wrong_numbers_are_wrong_usage(wrong, tmp_path):
+    with pytest.raises(SystemExit, match="2"):
+        main(["run", str(tmp_path), "--out", str(tmp_path / "out"), wrong])
+    with pytest.raises(SystemExit, match="2"):
+        main(["report", str(tmp_path), "page.html", "--worst=0"])
+
+
+def test_what_all_captures_need_is_missed_once(pretender, tmp_path, capsys):
+    drives, out = made_up(tmp_path / "drives", 1).parent, tmp_path / "out"
+    latin = tmp_path / "list.txt"
+    latin.write_bytes(b"drive\xff")
+    for captures, option, said in (
+        (drives, "--config=gone.toml", "no configuration gone.toml"),
+        (drives, "--scree=/bin/false", "/bin/false ended with 1"),
+        (drives, "--scheduler=rubbish", "the scheduler rubbish cannot be reached"),
+        (latin, "--workers=1", f"{latin} is no list of captures"),
+    ):
+        assert main(["run", str(captures), "--out", str(out), "--scree", pretender, option]) == 1
+        assert said in capsys.readouterr().err
+
+
 def test_a_failure_is_tried_again_where_that_is_asked_for(pretender, tmp_path):
     capture, out = made_up(tmp_path, 1, sleep=1), tmp_path / "out"
     assert not fleet.process(capture, out, pretender, timeout=0.1)["ok"]
@@ -209,7 +329,7 @@ def test_tables_and_page_of_two_versions(pretender, tmp_path, capsys):
     assert main(["report", str(new), str(page), "--against", str(old), "--scree", pretender]) == 0
     text = page.read_text()
     assert "Better: 1 drives, worse: 1, the same: 1" in text
-    worst_first = [text.rindex(f"drive00{number}</td>") for number in (3, 1, 2)]
+    worst_first = [text.rindex(f"drive00{number}</") for number in (3, 1, 2)]
     assert worst_first == sorted(worst_first)
     assert "failed: it is broken" in text
     assert main(["report", str(new), str(page)]) == 1

@@ -7,6 +7,7 @@ import struct
 import subprocess
 import tomllib
 from math import cos, pi, sin
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,7 +18,7 @@ pytest.importorskip("rosbags")
 from rosbags import rosbag1, rosbag2  # noqa: E402
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore  # noqa: E402
 
-from scree.bag_import import _PACKET, _SCAN  # noqa: E402
+from scree.bag_import import _PACKET, _SCAN, PACKET_NS, packets_of  # noqa: E402
 
 IMU, ODOMETRY, TF = "sensor_msgs/msg/Imu", "nav_msgs/msg/Odometry", "tf2_msgs/msg/TFMessage"
 SCAN = "velodyne_msgs/msg/VelodyneScan"
@@ -203,6 +204,39 @@ def test_times_of_another_clock_are_laid_before_the_arrival(capture, scree_progr
     times = np.array([t for t, _ in frames_of(tmp_path / "made" / "lidar.pcap")])
     assert np.abs(times - np.array([t for t, _ in bag.packets])).max() < 30_000_000
     assert (np.diff(times) > 0).all()
+
+
+@pytest.mark.parametrize(("mode", "step"), [(0x37, PACKET_NS), (0x38, PACKET_NS), (0x39, 663_552)])
+def test_packets_of_two_returns_come_twice_as_often(mode, step):
+    packet = SimpleNamespace(stamp=SimpleNamespace(sec=0, nanosec=0), data=bytes(1204) + bytes([mode, 0x22]))
+    times = [t for t, _ in packets_of(SimpleNamespace(packets=[packet] * 151), 10**18)]
+    assert times == [10**18 - n * step for n in reversed(range(151))]
+
+
+def test_a_topic_of_another_type_is_refused_and_leaves_nothing(capture, scree_program, tmp_path, capsys):
+    bag = Bag(capture, scree_program, False)
+    messages = bag.messages(bag.scans, bag.imu, bag.odometry)
+    path = bag.write(tmp_path / "drive", messages, rosbag2.StoragePlugin.SQLITE3)
+    made = tmp_path / "made"
+    for option, topic in (("--packets", "/imu/data"), ("--imu", "/odom"), ("--odometry", "/imu/data")):
+        assert main(["import", str(path), str(made), option, topic]) == 1
+        assert f"topic {topic} is " in capsys.readouterr().err
+        assert not made.exists()
+    (made / ".new").mkdir(parents=True)  # of one that was killed
+    assert main(["import", str(path), str(made), "--odometry", "/odom"]) == 0
+    assert sorted(it.name for it in made.iterdir()) == ["can.log", "imu.pcap", "lidar.pcap", "scree.toml"]
+
+
+@pytest.mark.parametrize("metadata", [None, b"", b"[", b"a: 1", b"\xff"])
+def test_a_broken_folder_is_one_sentence(metadata, tmp_path, capsys):
+    bag = tmp_path / "bag"
+    bag.mkdir()
+    if metadata is not None:
+        (bag / "metadata.yaml").write_bytes(metadata)
+    assert main(["import", str(bag), str(tmp_path / "made")]) == 1
+    (said,) = capsys.readouterr().err.splitlines()
+    assert str(bag) in said
+    assert metadata is not None or "no metadata.yaml" in said
 
 
 def test_what_is_missing_is_said(capture, scree_program, tmp_path, capsys):

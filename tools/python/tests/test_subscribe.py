@@ -65,6 +65,11 @@ def test_blind_is_never_an_empty_list(bus):
         assert not subscription.view().sees
 
 
+def test_a_wrong_url_is_named():
+    with pytest.raises(RuntimeError, match="rubbish://x"):
+        scree.subscribe("rubbish://x")
+
+
 def test_garbage_is_refused_and_counted(bus):
     url, sender = bus
     with scree.subscribe(url) as subscription:
