@@ -90,6 +90,27 @@ class ReportTest(ProgramTest):
         self.assertEqual(page.complaints, [])
         self.assertEqual([url for url in page.asked_for if not url.startswith("file://")], [])
 
+    def test_half_of_the_lists_make_no_score_and_keys_of_the_browser_stay_its_own(self):
+        capture = self.capture()
+        lists = self.path("half.jsonl")
+        self.done(SCREE, "detect", capture, "--out", lists)
+        with open(lists) as file:
+            lines = file.readlines()
+        self.write("half.jsonl", "".join(lines[: len(lines) // 2]))
+        out = self.path("half.html")
+        truth = os.path.join(capture, "truth.json")
+        self.done(SCREE, "report", lists, "--truth", truth, "--out", out)
+        page = Page(self, f"file://{out}")
+        self.assertIn("F1, does not count", page.text("#figures"))
+        page.click("#tab-Truth")
+        self.assertIn("this score does not count", page.text("#panel"))
+        press = "document.dispatchEvent(new KeyboardEvent('keydown', {key: '%s', ctrlKey: %s, cancelable: true}))"
+        page.of("page.show(0)")
+        self.assertTrue(page.of(press % ("ArrowRight", "true")))
+        self.assertEqual(page.of("page.now"), 0)
+        self.assertFalse(page.of(press % ("ArrowRight", "false")))
+        self.assertEqual(page.of("page.now"), 1)
+
     def test_the_ground_shows_a_hole_darker_and_where_nothing_was_seen(self):
         rows = []
         states, ground = [], []

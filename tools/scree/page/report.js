@@ -192,7 +192,7 @@ class Report {
       [report.lists.length, 'lists'], [report.tracks.size, 'obstacles'], [`${blind.toFixed(1)} s`, 'blind'],
     ];
     const all = report.truth?.score.all;
-    if (all) figures.push([all.f1 === null ? '–' : all.f1.toFixed(3), 'F1']);
+    if (all) figures.push([all.f1 === null ? '–' : all.f1.toFixed(3), report.truth.score.counts ? 'F1' : 'F1, does not count']);
     document.getElementById('figures').replaceChildren(...figures.map(([value, words]) => {
       const span = document.createElement('span');
       span.append(Object.assign(document.createElement('b'), { textContent: value }), ` ${words}`);

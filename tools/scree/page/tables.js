@@ -65,6 +65,8 @@ function truthTables(report, go) {
   const score = report.truth.score;
   const missed = [...asked.values()].filter((it) => it.missed > 0).sort((a, b) => b.missed - a.missed);
   const percent = (value) => value === null || value === undefined ? '–' : value.toFixed(3);
+  const covered = Math.floor(100 * score.coverage);
+  const doubt = score.counts ? [] : [hint(`The lists cover ${covered} % of the drive: this score does not count.`)];
   const scores = ['all', 'positive', 'negative'].filter((kind) => score[kind]).map((kind) => ({
     cells: [kind, percent(score[kind].f1), percent(score[kind].precision), percent(score[kind].recall),
             score[kind].true_positives, score[kind].false_positives, score[kind].false_negatives],
@@ -78,7 +80,7 @@ function truthTables(report, go) {
     go: () => go(it.list, it.id, false),
   }));
   return [
-    heading('Score'), table(['', 'F1', 'precision', 'recall', 'right', 'invented', 'missed'], scores),
+    heading('Score'), ...doubt, table(['', 'F1', 'precision', 'recall', 'right', 'invented', 'missed'], scores),
     heading(`Missed: ${missed.length} of ${asked.size} that were asked for`),
     missedRows.length ? table(['id', 'kind', 'shape', 'height m', 'lists missed', 'at m'], missedRows) : hint('None.', 'empty'),
     heading(`Invented: ${invented.size}`),
