@@ -7,10 +7,10 @@
 namespace scree {
 namespace {
 
-// Simulated right drives stay within 0.03 s.
-constexpr double kLate = 0.06, kRight = 0.04;  // seconds
-constexpr double kClear = 4;                   // standard deviations ...
-constexpr double kMostDeviation = 0.025;       // ... of so many seconds
+// What is sure of simulated right drives stays within 0.03 s.
+constexpr double kLateDelay = 0.06, kRightDelay = 0.04;  // seconds
+constexpr double kClearDeviations = 4;                   // standard deviations ...
+constexpr double kMostDeviation = 0.025;                 // ... of so many seconds
 constexpr double kMostUnexplained = 0.5;
 constexpr int kFewestWindows = 6;
 
@@ -51,11 +51,11 @@ SetupWatch::DelayFit SetupWatch::Lags::fit(double noise) const {
 
 SetupWatch::Verdict SetupWatch::judge_delay(const DelayFit& fit, SetupFault fault,
                                             double set) const {
-  if (std::abs(fit.delay) < kLate) {
-    const bool is_sure = fit.deviation * kClear < kLate;
-    return {is_sure && std::abs(fit.delay) < kRight ? Word::right : Word::unknown, {}};
+  if (std::abs(fit.delay) < kLateDelay) {
+    const bool is_sure = fit.deviation * kClearDeviations < kLateDelay;
+    return {is_sure && std::abs(fit.delay) < kRightDelay ? Word::right : Word::unknown, {}};
   }
-  const double deviation = std::min(kMostDeviation, std::abs(fit.delay) / kClear);
+  const double deviation = std::min(kMostDeviation, std::abs(fit.delay) / kClearDeviations);
   if (fit.deviation > deviation || fit.unexplained > kMostUnexplained) return {};
   return {Word::wrong, {.fault = fault, .off = fit.delay, .set = {set + fit.delay, 0, 0}}};
 }
