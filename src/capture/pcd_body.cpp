@@ -74,8 +74,8 @@ std::optional<Real> real_of(std::string_view word) {
   const char* const end = word.data() + word.size();
   Real value = 0;
   const auto read = std::from_chars(word.data(), end, value);
-  // As Microsoft's C library wrote what is no number: 1.#QNAN, -1.#IND, 1.#INF.
   if (read.ec == std::errc::invalid_argument) return std::nullopt;
+  // As Microsoft's C library wrote what is no number: 1.#QNAN, -1.#IND, 1.#INF.
   if (read.ptr != end && *read.ptr == '#') return std::numeric_limits<Real>::quiet_NaN();
   if (read.ptr != end) return std::nullopt;
   if (read.ec != std::errc::result_out_of_range) return value;

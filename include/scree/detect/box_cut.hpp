@@ -16,17 +16,21 @@ public:
   BoxCut() = default;
   /// @param place metres from the middle of the box
   BoxCut(const OrientedBox& box, bool is_across, float place)
-      : box_(box), is_across_(is_across), place_(place) {}
+      : box_(box),
+        cosine_(std::cos(box.yaw)),
+        sine_(std::sin(box.yaw)),
+        is_across_(is_across),
+        place_(place) {}
 
   /// Whether a position lies in the first part.
   bool has_first(float x, float y) const {
     const float dx = x - box_.center_x, dy = y - box_.center_y;
-    const float c = std::cos(box_.yaw), s = std::sin(box_.yaw);
-    return (is_across_ ? dx * c + dy * s : dy * c - dx * s) < place_;
+    return (is_across_ ? dx * cosine_ + dy * sine_ : dy * cosine_ - dx * sine_) < place_;
   }
 
 private:
   OrientedBox box_;
+  float cosine_ = 1, sine_ = 0;  // of its direction, worked out once for many positions
   bool is_across_ = true;
   float place_ = 0;
 };

@@ -41,7 +41,7 @@ void Outputs::add_to(CLI::App& command) {
 }
 
 void Outputs::require_free(std::initializer_list<fs::path> files,
-                           std::initializer_list<fs::path> read) const {
+                           const std::vector<fs::path>& read) const {
   std::error_code none;
   for (const fs::path& file : files) {
     if (!is_file(file)) continue;

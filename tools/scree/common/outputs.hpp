@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <initializer_list>
+#include <vector>
 
 namespace scree::cli {
 
@@ -17,7 +18,7 @@ public:
   /// name, a device and a pipe are always free.
   /// @param read files, or folders of captures
   void require_free(std::initializer_list<std::filesystem::path> files,
-                    std::initializer_list<std::filesystem::path> read = {}) const;
+                    const std::vector<std::filesystem::path>& read = {}) const;
   /// The same for a folder that gets many files: it may be there, but empty.
   void require_empty(const std::filesystem::path& folder) const;
 

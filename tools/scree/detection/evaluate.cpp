@@ -59,7 +59,7 @@ private:
 };
 
 void evaluate(const EvaluateOptions& options) {
-  for (const auto& file : options.files) options.outputs.require_free({options.matches}, {file});
+  options.outputs.require_free({options.matches}, {options.files.begin(), options.files.end()});
   Scorer scorer;
   MatchFile matches(options.matches);
   for (std::size_t i = 0; i + 1 < options.files.size(); i += 2) {

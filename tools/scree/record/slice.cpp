@@ -115,15 +115,16 @@ void cut(const SliceOptions& options) {
   const Slice slice = find_slice(options, settings);
   say(slice.steps);
   make_capture_folder(options.folder, options.outputs);
-  const auto lidar = lidar_file(options.capture);
-  if (fs::equivalent(options.capture, options.folder) ||
-      (lidar && fs::equivalent(fs::absolute(*lidar).parent_path(), options.folder))) {
+  const fs::path source = fs::is_directory(options.capture)
+                              ? options.capture
+                              : fs::absolute(options.capture).parent_path();
+  if (fs::equivalent(source, options.folder)) {
     throw Failure("a part cannot take the place of the capture that it is cut from");
   }
   if (const auto config = settings_file(options.capture, options.config)) {
     keep_config(*config, options.folder);
   }
-  if (lidar) {
+  if (lidar_file(options.capture)) {
     copy_lidar(options.capture, settings, slice, options.folder / "lidar.pcap");
   }
   if (!fs::is_directory(options.capture)) return;
