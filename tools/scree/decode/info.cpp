@@ -143,7 +143,6 @@ Json describe(const LidarCapture& capture, const LidarStream& stream, const Swee
       {"firmware", velodyne::sentence(stream.firmware())},
       {"broken_off", capture.broken_off()},
       {"two_senders", capture.two_senders()},
-      {"lost_times", capture.lost_times(stream)},
   };
 }
 
@@ -191,7 +190,7 @@ void print_table(const Json& info) {
   }
   row("other frames", listed(info["frames"], "-"));
   for (const Json& mistake : info["settings"]) row("settings", mistake);
-  for (const char* key : {"firmware", "broken_off", "two_senders", "lost_times"}) {
+  for (const char* key : {"firmware", "broken_off", "two_senders"}) {
     if (const std::string note = info[key]; !note.empty()) row("note", note);
   }
 }

@@ -38,6 +38,8 @@ private:
 class StepFinder {
 public:
   void add(std::int64_t arrival_ns, std::int64_t device_ns) {
+    if (packets_++ == 0) first_arrival_ns_ = arrival_ns;
+    if (arrival_ns != first_arrival_ns_) has_times_ = true;
     if (last_) {
       const std::int64_t elapsed = wrapped(device_ns - last_->device_ns);
       // A device that was away or has started anew says nothing.
@@ -52,6 +54,11 @@ public:
     if (last_) notice(arrival_ns);
     if (!jump_) usual_.add(arrival_ns - running_ns_, running_ns_);
     last_ = Packet{arrival_ns, device_ns};
+  }
+  /// Many packets arrived, and all at one time.
+  bool has_lost_times() const {
+    constexpr int kMany = 100;  // 0.13 s of a lidar
+    return packets_ > kMany && !has_times_;
   }
   /// At the end of the file.
   HostSteps take() {
@@ -96,6 +103,9 @@ private:
     jump_.reset();
   }
 
+  std::uint64_t packets_ = 0;
+  std::int64_t first_arrival_ns_ = 0;
+  bool has_times_ = false;
   std::int64_t running_ns_ = 0;  // the device's clock, on and on over the full hour
   std::optional<Packet> last_;
   LeastDelay usual_;
@@ -105,21 +115,28 @@ private:
 
 }  // namespace
 
-HostSteps find_host_steps(const std::filesystem::path& capture, const LidarSettings& lidar) try {
-  LidarFile file(capture, lidar);
+HostSteps find_host_steps(const std::filesystem::path& capture, const LidarSettings& lidar) {
+  std::optional<LidarFile> file;
+  try {
+    file.emplace(capture, lidar);
+  } catch (const Failure&) {  // that it cannot be read is said by whoever needs it
+    return {};
+  }
   StepFinder finder;
   Datagram datagram;
   std::optional<std::uint32_t> sender;
-  while (file.next(datagram)) {
+  while (file->next(datagram)) {
     if (datagram.destination_port != lidar.port) continue;
     if (datagram.payload.size() != velodyne::kDataPacketSize) continue;
     if (!sender) sender = datagram.source;
     if (*sender != datagram.source) continue;
     finder.add(datagram.arrival_ns, std::int64_t{velodyne::timestamp_us(datagram.payload)} * 1000);
   }
+  if (finder.has_lost_times()) {
+    throw Failure(capture.string() +
+                  ": all packets arrived at one time: what wrote the file has lost their times");
+  }
   return finder.take();
-} catch (const Failure&) {  // that it cannot be read is said by whoever needs it
-  return {};
 }
 
 void say(const HostSteps& steps) {

@@ -19,7 +19,7 @@ struct HostStep {
 using HostSteps = std::vector<HostStep>;
 
 /// The steps that the lidar's own clock knows nothing of; a pass over its file. None where no lidar
-/// is in the capture to tell of them.
+/// is in the capture to tell of them. Throws Failure where all packets have one time of arrival.
 HostSteps find_host_steps(const std::filesystem::path& capture, const LidarSettings& lidar);
 /// A line on stderr for each.
 void say(const HostSteps& steps);

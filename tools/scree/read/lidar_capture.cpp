@@ -81,12 +81,6 @@ std::string LidarCapture::two_senders() const {
       ipv4_text(senders_.other()));
 }
 
-std::string LidarCapture::lost_times(const LidarStream& stream) const {
-  constexpr std::uint64_t kMany = 100;  // packets: 0.13 s of a lidar
-  if (stream.counters().accepted <= kMany || last_ns_ > first_ns_) return "";
-  return name_ + ": all packets arrived at one time: what wrote the file has lost their times";
-}
-
 std::string LidarCapture::why_nothing(const LidarStream& stream) const {
   const LidarCounters& counters = stream.counters();
   const std::uint64_t refused = counters.all_refused();
@@ -143,7 +137,6 @@ void report_capture(const LidarCapture& capture, const LidarStream& stream) {
   if (capture.ports().empty() && !capture.broken_off().empty()) throw Failure(capture.broken_off());
   note(capture.broken_off());
   if (stream.counters().accepted == 0) throw Failure(capture.why_nothing(stream));
-  if (std::string lost = capture.lost_times(stream); !lost.empty()) throw Failure(lost);
   note(capture.two_senders());
   note(velodyne::sentence(stream.firmware()));
   if (const std::uint64_t refused = stream.counters().all_refused(); refused > 0) {

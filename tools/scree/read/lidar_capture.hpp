@@ -55,8 +55,6 @@ public:
 
   /// One sentence where several sensors send to the data port; empty where one does.
   std::string two_senders() const;
-  /// One sentence where the packets' times of arrival are all the same; empty: they are not.
-  std::string lost_times(const velodyne::LidarStream& stream) const;
   /// One sentence on why no packet was accepted.
   std::string why_nothing(const velodyne::LidarStream& stream) const;
 
