@@ -45,7 +45,11 @@ Result<PcapReader> PcapReader::open(const std::filesystem::path& file) {
     return fail(fmt::format("{}: is packed with {}: unpack it first", file.string(), packer));
   }
   if (is_pcapng(file)) {
-    return PcapReader(file.string(), nullptr, std::make_unique<PcapngFile>(file));
+    PcapReader reader(file.string(), nullptr, std::make_unique<PcapngFile>(file));
+    if (reader.link_type() >= 0) return reader;
+    const std::string& fault = reader.pcapng_->fault();
+    return fail(fault.empty() ? reader.name_ + ": describes no interface, and so holds no packet"
+                              : reader.name_ + ": breaks off before its first packet: " + fault);
   }
   std::array<char, PCAP_ERRBUF_SIZE> reason{};
   std::unique_ptr<pcap, Close> handle(pcap_open_offline_with_tstamp_precision(

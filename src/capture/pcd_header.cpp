@@ -68,9 +68,9 @@ Result<Lines> header_lines(std::string_view file) {
     begin = end + 1;
     if (words.empty() || words[0].starts_with('#')) continue;
     const std::string_view key = words[0];
-    constexpr std::array<std::string_view, 10> kKeys = {"VERSION", "FIELDS", "SIZE",   "TYPE",
-                                                        "COUNT",   "WIDTH",  "HEIGHT", "VIEWPOINT",
-                                                        "POINTS",  "DATA"};
+    constexpr std::array<std::string_view, 11> kKeys = {
+        "VERSION", "FIELDS", "COLUMNS",   "SIZE",   "TYPE", "COUNT",
+        "WIDTH",   "HEIGHT", "VIEWPOINT", "POINTS", "DATA"};
     if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end()) {
       if (lines.values.empty()) return fail("is not a PCD file");
       return fail("has an unknown line in its header");
@@ -97,28 +97,33 @@ Result<std::size_t> single_number(const Lines& lines, std::string_view key, std:
   return *value;
 }
 
+/// Files of before version 0.7 call FIELDS COLUMNS, and need not say SIZE, TYPE and COUNT of single
+/// floats.
 Result<std::vector<PcdField>> read_fields(const Lines& lines) {
   const auto words_of = [&](std::string_view key) -> const Words* {
     const auto found = lines.values.find(key);
     return found == lines.values.end() ? nullptr : &found->second;
   };
-  const Words* const names = words_of("FIELDS");
+  const Words* const names = words_of(lines.values.contains("FIELDS") ? "FIELDS" : "COLUMNS");
   if (names == nullptr || names->empty() || names->size() > kMostFields) {
     return fail("has no usable FIELDS line in its header");
   }
   for (const std::string_view key : {"SIZE", "TYPE", "COUNT"}) {
     const Words* const words = words_of(key);
-    if (words == nullptr && key == "COUNT") continue;
-    if (words == nullptr || words->size() != names->size()) {
+    if (words != nullptr && words->size() != names->size()) {
       return fail(fmt::format("does not give one {} for each field", key));
     }
   }
+  const auto word_of = [&](std::string_view key, std::size_t i, std::string_view otherwise) {
+    const Words* const words = words_of(key);
+    return words == nullptr ? otherwise : (*words)[i];
+  };
   std::vector<PcdField> fields;
   std::size_t offset = 0;
   for (std::size_t i = 0; i < names->size(); ++i) {
-    const std::string_view type = (*words_of("TYPE"))[i];
-    const auto size = number((*words_of("SIZE"))[i]);
-    const auto count = words_of("COUNT") == nullptr ? 1 : number((*words_of("COUNT"))[i]);
+    const std::string_view type = word_of("TYPE", i, "F");
+    const auto size = number(word_of("SIZE", i, "4"));
+    const auto count = number(word_of("COUNT", i, "1"));
     const char kind = type.size() == 1 ? upper(type[0]) : '?';
     const bool whole = kind == 'I' || kind == 'U';
     const std::size_t bytes = size.value_or(0);
@@ -132,6 +137,22 @@ Result<std::vector<PcdField>> read_fields(const Lines& lines) {
     offset += bytes * *count;
   }
   return fields;
+}
+
+/// Without WIDTH it is POINTS; without HEIGHT the cloud is one row.
+Result<std::size_t> read_points(const Lines& lines) {
+  const auto has = [&lines](std::string_view key) { return lines.values.contains(key); };
+  if (has("POINTS") && !has("WIDTH") && !has("HEIGHT")) return single_number(lines, "POINTS", 0);
+  const auto width = single_number(lines, "WIDTH", 0);
+  if (!width) return width;
+  const auto height = has("HEIGHT") ? single_number(lines, "HEIGHT", 0) : std::size_t{1};
+  if (!height) return height;
+  if (has("POINTS")) {
+    const auto points = single_number(lines, "POINTS", 0);
+    if (!points) return points;
+    if (*points != *width * *height) return fail("has POINTS that are not WIDTH times HEIGHT");
+  }
+  return *width * *height;
 }
 
 /// Seven numbers, of which the first three are the place.
@@ -213,11 +234,8 @@ Result<PcdHeader> parse_pcd_header(std::string_view file) {
   if (!lines) return tl::make_unexpected(lines.error());
   auto fields = read_fields(*lines);
   if (!fields) return tl::make_unexpected(fields.error());
-  const auto width = single_number(*lines, "WIDTH", 0);
-  if (!width) return tl::make_unexpected(width.error());
-  const auto height = single_number(*lines, "HEIGHT", 0);
-  if (!height) return tl::make_unexpected(height.error());
-
+  const auto points = read_points(*lines);
+  if (!points) return tl::make_unexpected(points.error());
   const auto viewpoint = read_viewpoint(*lines);
   if (!viewpoint) return tl::make_unexpected(viewpoint.error());
 
@@ -226,13 +244,8 @@ Result<PcdHeader> parse_pcd_header(std::string_view file) {
   header.fields = std::move(*fields);
   header.point_size =
       header.fields.back().offset + header.fields.back().size * header.fields.back().count;
-  header.points = *width * *height;
+  header.points = *points;
   header.body = lines->body;
-  if (lines->values.contains("POINTS")) {
-    const auto points = single_number(*lines, "POINTS", 0);
-    if (!points) return tl::make_unexpected(points.error());
-    if (*points != header.points) return fail("has POINTS that are not WIDTH times HEIGHT");
-  }
   if (header.points > kMostPoints) return fail("has more points than can be");
 
   const Words& data = lines->values.at("DATA");

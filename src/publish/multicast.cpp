@@ -21,6 +21,22 @@ std::string no_url(const std::string& url) {
          "(224.0.0.0 to 239.255.255.255) and a port";
 }
 
+/// LCM takes what is no number for 0, and lets the kernel refuse what is too large.
+bool has_possible_ttl(std::string_view url) {
+  constexpr std::string_view kKey = "ttl=";
+  std::size_t at = url.find('?');
+  while (at != std::string_view::npos) {
+    const std::string_view option = url.substr(at + 1, url.find('&', at + 1) - at - 1);
+    at = url.find('&', at + 1);
+    if (!option.starts_with(kKey)) continue;
+    const std::string_view value = option.substr(kKey.size());
+    std::uint8_t ttl = 0;
+    const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), ttl);
+    if (error != std::errc{} || end != value.data() + value.size()) return false;
+  }
+  return true;
+}
+
 Result<sockaddr_in> group_of(const std::string& url) {
   const std::string_view rest = std::string_view(url).substr(kProvider.size());
   const std::string network(rest.substr(0, rest.find('?')));
@@ -45,7 +61,10 @@ Result<sockaddr_in> group_of(const std::string& url) {
 }  // namespace
 
 Result<void> check_lcm_url(const std::string& url) {
-  if (is_multicast(url)) return group_of(url).map([](const sockaddr_in&) {});
+  if (is_multicast(url)) {
+    if (!has_possible_ttl(url)) return fail("the ttl of the LCM url " + url + " must be 0 to 255");
+    return group_of(url).map([](const sockaddr_in&) {});
+  }
   for (const std::string_view other : {"tcpq://", "mpudpm://", "memq://", "file://"}) {
     if (url.starts_with(other)) return {};
   }

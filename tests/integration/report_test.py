@@ -123,8 +123,7 @@ class ReportTest(ProgramTest):
                      "cell_size": 0.2, "columns": 40, "rows": 40, "states": states, "ground": ground})  # fmt: skip
         lists = self.write_lines("lists.jsonl", [self.obstacle_list(n) for n in range(3)])
         page = Page(self, f"file://{self.report(lists, '--grid', self.write_lines('grid.jsonl', rows))}")
-        for layer in ("way", "stop", "sweep"):
-            page.click(f"#layer-{layer}")
+        page.click("#layer-way")
         flat, pit, unseen = (page.colour_at(x, y) for x, y in [(2.1, 2.1), (0.1, 0.1), (-3.95, 1.1)])
         self.assertEqual(flat[0], flat[1])
         self.assertLess(pit[0], flat[0] - 40)
@@ -196,6 +195,24 @@ class ReportTest(ProgramTest):
         page.click("#play")
         page.wait_for("page.now > 2 && page.now < 19")
         self.assertEqual(page.complaints, [])
+
+    def test_a_narrow_window_shows_all_of_it(self):
+        lists = self.write_lines("lists.jsonl", [self.obstacle_list(0, [self.rock()]), self.obstacle_list(1)])
+        page = Page(self, f"file://{self.report(lists)}", width=400, height=800)
+        self.assertEqual(page.of("[...document.querySelectorAll('#layers input')].map((it) => it.id)"),
+                         ["layer-way", "layer-obstacles", "layer-labels", "layer-past"])  # fmt: skip
+        self.assertGreater(page.of("document.getElementById('slider').clientWidth"), 300)
+        self.assertLessEqual(page.of("document.documentElement.scrollWidth"), 400)
+        for seen in ("fit", "play", "tabs", "slider"):
+            self.assertTrue(
+                page.of(
+                    f"""(() => {{ const sought = document.getElementById("{seen}");
+                    const box = sought.getBoundingClientRect();
+                    const at = document.elementFromPoint(box.x + box.width / 2, box.y + box.height / 2);
+                    return sought.contains(at); }})()"""
+                ),
+                seen,
+            )
 
     def test_what_cannot_be_reported_is_refused(self):
         out = self.path("report.html")

@@ -46,6 +46,11 @@ TEST(Pcap, APcapngFileMayBreakOffAnywhere) {
   }
   EXPECT_THAT(read_all(folder.write("cut.pcapng", whole.substr(0, whole.size() - 9))).broken_off,
               HasSubstr("cut.pcapng: breaks off: a block is cut"));
+  constexpr std::size_t kSection = 28;  // bytes
+  EXPECT_THAT(read_all(folder.write("cut.pcapng", whole.substr(0, kSection + 5))).error,
+              HasSubstr("cut.pcapng: breaks off before its first packet: a block is cut"));
+  EXPECT_THAT(read_all(folder.write("bare.pcapng", whole.substr(0, kSection))).error,
+              HasSubstr("bare.pcapng: describes no interface"));
   file.packet(7, 1, "of an interface that is not there");
   EXPECT_THAT(read_all(folder.write("odd.pcapng", file.bytes)).broken_off,
               HasSubstr("of no interface"));

@@ -111,6 +111,18 @@ TEST(PcdReference, ReadsWhatPclWritesOfAnyPointType) {
   }
 }
 
+TEST(PcdReference, ReadsHeadersOfOlderVersionsAsPclDoes) {
+  const TemporaryFolder folder;
+  const std::string lines = "DATA ascii\n1 2 3\n4 5 6\n";
+  for (const std::string header : {
+           "VERSION .5\nCOLUMNS x y z\nPOINTS 2\n",
+           "VERSION .6\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 2\nPOINTS 2\n",
+           "FIELDS x y z\nWIDTH 1\nHEIGHT 2\nPOINTS 2\n",
+       }) {
+    expect_as_pcl(folder.write("older.pcd", header + lines));
+  }
+}
+
 TEST(PcdReference, ReadsTheWordsOfAnAsciiFileAsPclDoes) {
   const TemporaryFolder folder;
   const std::string header =

@@ -162,6 +162,8 @@ TEST(Pcd, EveryBadFileIsOneSentence) {
               HasSubstr("bad.pcd: is cut: 2 of 3 points"));
   EXPECT_THAT(error_of(xyz("-1", "binary") + point), HasSubstr("bad WIDTH"));
   EXPECT_THAT(error_of(xyz("1", "hexadecimal") + point), HasSubstr("DATA"));
+  EXPECT_THAT(error_of("FIELDS x y z\nHEIGHT 1\nPOINTS 1\nDATA ascii\n1 2 3\n"),
+              HasSubstr("no WIDTH"));
   EXPECT_THAT(error_of(header("x y", "4 4", "F F", "1", "binary") + point),
               HasSubstr("no field z"));
   EXPECT_THAT(error_of(header("x y z", "4 4", "F F F", "1", "binary") + point),

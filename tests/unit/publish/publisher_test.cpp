@@ -232,6 +232,19 @@ TEST(Multicast, TheTextOfAUrlIsCheckedWithoutARoute) {
   }
 }
 
+TEST(Multicast, TheTtlIsANumberOfHops) {
+  const std::string group = "udpm://239.1.2.3:7667?";
+  for (const char* options : {"", "ttl=0", "ttl=255", "recv_buf_size=100000&ttl=1"}) {
+    EXPECT_TRUE(check_lcm_url(group + options)) << options;
+  }
+  for (const char* options : {"ttl=", "ttl=256", "ttl=-1", "ttl=1x", "recv_buf_size=1&ttl=many"}) {
+    const std::string url = group + options;
+    const auto checked = check_lcm_url(url);
+    ASSERT_FALSE(checked) << url;
+    EXPECT_EQ(checked.error().message, "the ttl of the LCM url " + url + " must be 0 to 255");
+  }
+}
+
 TEST(Publisher, AnUnknownProviderIsRefused) {
   const auto publisher = Publisher::open("pigeon://coop");
   ASSERT_FALSE(publisher);

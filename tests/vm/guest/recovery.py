@@ -68,6 +68,15 @@ def bus_goes_off(robot):
     lists_go_on(robot)
 
 
+def the_clock_is_set(robot):
+    """an hour ahead, and back again: lists go on, each with the clock's time of now"""
+    for by in ["1 hour", "1 hour ago"]:
+        mark = robot.watch.mark()
+        run(f"date -s '{by}'")
+        lists_go_on(robot)
+        robot.watch.says("health ok", mark)
+
+
 def a_thread_hangs(robot):
     """whichever it is: systemd ends the process, starts it anew, and it sees again"""
     for name in ["detector", "publisher", "lidar"]:
@@ -141,6 +150,7 @@ STEPS = [
     encoder_link_goes_down,
     encoder_interface_goes,
     bus_goes_off,
+    the_clock_is_set,
     a_thread_hangs,
     the_process_is_killed,
     a_usb_adapter_is_the_imus,

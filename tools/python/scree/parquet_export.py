@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Any
 
@@ -204,5 +205,7 @@ def export_parquet(
         raise ReadError(f"{source}: a record does not fit into the tables: {error}") from error
     folder.mkdir(parents=True, exist_ok=True)
     for name, table in tables.items():
-        pq.write_table(table, folder / f"{name}.parquet")
+        fresh = folder / f"{name}.new"
+        pq.write_table(table, fresh)
+        os.replace(fresh, folder / f"{name}.parquet")
     return {name: len(table) for name, table in tables.items()}

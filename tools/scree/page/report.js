@@ -47,7 +47,8 @@ class Report {
     this.map = new MapView(document.getElementById('map'), this);
     this.map.onPick = (obstacle) => this.pick(obstacle);
     this.map.fit(this.bounds());
-    fillLayers(this.map, report.truth ? [] : ['truth'], report.grids.length ? [] : ['unknown']);
+    const has = { truth: report.truth, unknown: report.grids.length, ground: report.ground, stop: report.stop, sweep: report.sweeps.lists.length };
+    fillLayers(this.map, Object.keys(has).filter((layer) => !has[layer]));
     fillLegend(document.getElementById('legend'), Boolean(report.truth));
     this.charts = [...countSeries(report.lists), ...report.health.series].map(
       (series) => new Chart(series, this.span, report.health.events, (t) => this.goTo(t)));
@@ -213,10 +214,10 @@ function countSeries(lists) {
           { name: 'from list to list', unit: 'ms', t, v: gap }];
 }
 
-function fillLayers(map, ...without) {
+function fillLayers(map, without) {
   const box = document.getElementById('layers');
   for (const [key, words] of LAYERS) {
-    if (without.flat().includes(key)) continue;
+    if (without.includes(key)) continue;
     const label = document.createElement('label');
     const input = Object.assign(document.createElement('input'), { type: 'checkbox', checked: map.shown[key], id: `layer-${key}` });
     input.addEventListener('change', () => { map.shown[key] = input.checked; map.redraw(); });

@@ -285,7 +285,7 @@ std::vector<std::uint8_t> ReportData::pack() const {
                {"title", title},
                {"source", source},
                {"begin_ns", std::to_string(begin_ns())},
-               {"stop", {{"length", stop.length}, {"width", stop.width}}},
+               {"stop", stop ? Json{{"length", stop->length}, {"width", stop->width}} : Json()},
                {"lists", lists_json()},
                {"health", health_json()},
                {"truth", truth_},

@@ -4,6 +4,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <span>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,7 +39,7 @@ struct ReportEvent {
 class ReportData {
 public:
   std::string title, source;  ///< of the page; what was reported on
-  StopSettings stop;
+  std::optional<StopSettings> stop;  ///< not told by lists alone
 
   void add(const ObstacleList& list);
   /// Those of the list added last, in `base`; every so many of them are kept.
