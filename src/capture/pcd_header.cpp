@@ -68,9 +68,9 @@ Result<Lines> header_lines(std::string_view file) {
     begin = end + 1;
     if (words.empty() || words[0].starts_with('#')) continue;
     const std::string_view key = words[0];
-    constexpr std::array<std::string_view, 11> kKeys = {
-        "VERSION", "FIELDS", "COLUMNS",   "SIZE",   "TYPE", "COUNT",
-        "WIDTH",   "HEIGHT", "VIEWPOINT", "POINTS", "DATA"};
+    constexpr std::array<std::string_view, 11> kKeys = {"VERSION",   "FIELDS", "COLUMNS", "SIZE",
+                                                        "TYPE",      "COUNT",  "WIDTH",   "HEIGHT",
+                                                        "VIEWPOINT", "POINTS", "DATA"};
     if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end()) {
       if (lines.values.empty()) return fail("is not a PCD file");
       return fail("has an unknown line in its header");

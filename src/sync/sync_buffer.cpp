@@ -23,6 +23,13 @@ bool is_sound(const ImuSample& sample) {
          is_plausible(sample);
 }
 
+/// What was not sent is nought, whatever stands there.
+void clear_absent(ImuSample& sample) {
+  if (!sample.has_orientation) sample.orientation.setIdentity();
+  if (!sample.has_rate) sample.rate.setZero();
+  if (!sample.has_acceleration) sample.acceleration.setZero();
+}
+
 bool is_sound(const EncoderSample& sample) {
   constexpr double kFarthest = 1e9;  // metres: years of driving
   return is_time(sample.t_ns) && std::abs(sample.distance) < kFarthest;
@@ -79,6 +86,7 @@ bool SyncBuffer::put(const EncoderSample& sample) {
 }
 
 bool SyncBuffer::accept(ImuSample sample) {
+  clear_absent(sample);
   if (!is_sound(sample)) return false;
   sample.t_ns -= delays_.imu_ns;
   if (sample.started_over) imu_restart_ns_ = sample.t_ns;

@@ -15,7 +15,7 @@ LidarOdometry::LidarOdometry(std::size_t max_points, OwnReturns own)
     : own_(std::move(own)),
       sweep_(max_points),
       registration_(max_points),
-      surfels_(kOdometrySurfel, 64, 32, 1U << 14U) {
+      surfels_(kOdometrySurfel, 64, 32) {
   lidar_.max_range = kOdometryReach;
 }
 

@@ -20,15 +20,15 @@ constexpr float kMinWidth = 0.12F;  // of the cell's edge
 
 }  // namespace
 
-SurfelMap::SurfelMap(float cell, int width, int height, std::size_t most)
+SurfelMap::SurfelMap(float cell, int width, int height)
     : cell_(cell),
       inverse_(1 / cell),
       width_(width),
       height_(height),
       numbers_(static_cast<std::size_t>(width) * static_cast<std::size_t>(width) *
                static_cast<std::size_t>(height)),
-      cells_(most) {
-  cells_.resize(most);
+      cells_(2 * static_cast<std::size_t>(width) * static_cast<std::size_t>(width)) {
+  cells_.resize(cells_.capacity());
   clear();
 }
 

@@ -87,8 +87,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
                       : 100'000'000);
     for (std::int64_t t_ns = now_ns; t_ns <= now_ns + 100'000'000; t_ns += 20'000'000) {
       pipeline.sensors().put(imu_of(input, t_ns));
-      way += any(input, 0.2);
-      pipeline.sensors().put(EncoderSample{t_ns, 0, way, way});
+      way += input.ConsumeFloatingPointInRange(-0.2, 0.2);
+      const double reading = way + any(input, 0.01);
+      pipeline.sensors().put(EncoderSample{t_ns, 0, reading, reading});
     }
     fill(input, sweep);
     sweep.end_ns = end_ns;

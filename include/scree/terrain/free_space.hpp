@@ -56,7 +56,7 @@ public:
   bool is_seen_through(const Eigen::Vector3f& point, std::uint32_t sweep) const;
 
 private:
-  using Grid = ToroidalGrid<128, 32>;
+  using Grid = ToroidalGrid<kGridAcross, kGridUp>;
 
   struct Cell {
     Grid::CellIndex index;

@@ -27,9 +27,9 @@ struct Surfel {
 class SurfelMap {
 public:
   /// @param cell edge, metres
-  /// @param width, height of the grid in cells, powers of two: 38 m x 38 m x 19 m at cells of 0.3 m
-  /// @param most cells that it has room for: twice those of dense ground as wide as the grid
-  explicit SurfelMap(float cell, int width = 128, int height = 64, std::size_t most = 1U << 15U);
+  /// @param width, height of the grid in cells, powers of two: 38 m x 38 m x 19 m at cells of 0.3
+  /// m. It has room for twice the cells of dense ground as wide.
+  explicit SurfelMap(float cell, int width = 128, int height = 64);
 
   void add(const Eigen::Vector3f& point);
 

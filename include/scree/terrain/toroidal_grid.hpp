@@ -8,6 +8,13 @@
 
 namespace scree {
 
+/// Cells across and up of the grids around the robot. The fuzz targets make them anew in each run,
+/// and have small ones.
+#ifndef SCREE_GRID_ACROSS
+#define SCREE_GRID_ACROSS 128
+#endif
+inline constexpr int kGridAcross = SCREE_GRID_ACROSS, kGridUp = kGridAcross / 4;
+
 /// A grid of cubic cells whose storage wraps around in all three directions. Cells that lie a
 /// multiple of the grid's size apart share a slot of memory; the user keeps the CellIndex there and
 /// so tells which one the slot holds.

@@ -119,7 +119,7 @@ public:
 
 private:
   /// Blocks that lie far apart share a count.
-  using BlockGrid = ToroidalGrid<128, 32>;
+  using BlockGrid = ToroidalGrid<kGridAcross, kGridUp>;
 
   static std::size_t slot_of(const BlockKey& block) {
     return BlockGrid::CellIndex{block.x, block.y, block.z}.slot();

@@ -238,6 +238,22 @@ TEST_F(SyncBufferTest, RefusesWhatNoSensorCanHaveMeasured) {
   EXPECT_EQ(buffer_->wheel().size(), 12U) << "after silence the wheel begins anew";
 }
 
+TEST_F(SyncBufferTest, WhatStandsInThePlaceOfAnAbsentValueIsNotUsed) {
+  for (const std::int64_t t_ns : {0L, 20 * kMillisecond}) {
+    ImuSample imu = turning(t_ns, {0, 0, 1});
+    imu.has_rate = imu.has_acceleration = false;
+    imu.rate.setConstant(1e308);
+    imu.acceleration.setConstant(kNotANumber);
+    buffer_->put(imu);
+    buffer_->gather();
+    const auto attitude = buffer_->attitude_at(kStart + t_ns + 10 * kMillisecond);
+    ASSERT_TRUE(attitude) << t_ns;
+    EXPECT_LT(attitude->rate.norm(), 2) << t_ns;
+    EXPECT_NEAR(attitude->rotation.norm(), 1, 1e-9) << t_ns;
+  }
+  EXPECT_EQ(buffer_->late(), 0U);
+}
+
 TEST_F(SyncBufferTest, GoesOnWhenTheClockWasSetBackOrASampleCameFromTheFuture) {
   put_until(0, kSecond);
   put_until(-3600 * kSecond, -3599 * kSecond);

@@ -14,8 +14,9 @@ from steps import IS_EMULATED, GpioChip, run
 
 CONFIG = "/etc/scree/scree.toml"
 DROP_IN = "/run/systemd/system/screed.service.d/emulated.conf"
-# A coarse map, so that lists come in time on a slow machine too.
-MAP = "registration = false\nreach = 6.0\n"
+# A coarse and narrow map, so that lists come in time on an emulated machine too.
+REACH = 5.0
+MAP = f"registration = false\nreach = {REACH}\nsearch_reach = {REACH}\n"
 BUS_OFF = b"\x40\x00\x00\x20" + b"\x08\x00\x00\x00" + bytes(8)  # an error frame of SocketCAN
 
 
@@ -27,10 +28,10 @@ class PtyMti(EmulatedMti):
         os.chown(self.port, -1, grp.getgrnam("dialout").gr_gid)
         os.chmod(self.port, 0o660)
 
-    def _answer(self, master):
+    def _answer(self):
         # Unlike a real port, a pseudo-terminal stays locked when the process that has locked it dies.
-        threading.Thread(target=self._unlock, args=[master], daemon=True).start()
-        super()._answer(master)
+        threading.Thread(target=self._unlock, args=[self.master], daemon=True).start()
+        super()._answer()
 
     def _unlock(self, master):
         while self.master == master:
@@ -49,7 +50,8 @@ class SerialMti(EmulatedMti):
     def plug_in(self):
         run("stty -F /dev/ttyS1 raw -echo 115200")
         self.master = os.open("/dev/ttyS1", os.O_RDWR | os.O_NOCTTY)
-        threading.Thread(target=self._answer, args=[self.master], daemon=True).start()
+        self.answers = threading.Thread(target=self._answer, daemon=True)
+        self.answers.start()
 
 
 class Bus:
@@ -88,17 +90,18 @@ class Robot:
                 file.write("[Service]\nWatchdogSec=20\n")
             run("systemctl daemon-reload")
 
-    def configure(self, stop="length = 0.1\nwidth = 0.1\nhold = 0.0", device=None, voxel=0.1):
+    def configure(self, stop="length = 0.1\nwidth = 0.1\nhold = 0.0", device=None, voxel=0.2):
         with open(os.path.join(self.capture, "scree.toml")) as file:
             text = file.read()
         text = re.sub(r'device = ".*"', f'device = "{device or self.mti.port}"', text)
         text = text.replace('interface = "can0"', 'interface = "vcan0"')
+        text = re.sub(r"max_range = .*", f"max_range = {REACH + 1}", text)
         lines = (
             f'[gpio]\npps = "{self.chip.name}:pps"\nstop = "rig:stop"\n'
             'heartbeat = "rig:2"\n'
         )
         with open(CONFIG, "w") as file:
-            file.write(f"{text}{lines}[stop]\n{stop}\n[map]\n{MAP}voxel = {voxel}\n")
+            file.write(f"{text}{lines}[stop]\n{stop}\n[lcm]\ngrid = false\n[map]\n{MAP}voxel = {voxel}\n")
 
     def play(self):
         self.player = Player(self.capture, 2368, 8308, self.mti, self.can, loop=True)

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <span>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -38,7 +38,7 @@ struct ReportEvent {
 /// Gathers what the page of a report shows.
 class ReportData {
 public:
-  std::string title, source;  ///< of the page; what was reported on
+  std::string title, source;         ///< of the page; what was reported on
   std::optional<StopSettings> stop;  ///< not told by lists alone
 
   void add(const ObstacleList& list);

@@ -101,9 +101,10 @@ int bind(httplib::Server& server, const ServerOptions& options) {
   const bool takes_any = options.port == 0;
   const int port = takes_any ? server.bind_to_any_port(address) : options.port;
   if (port > 0 && (takes_any || server.bind_to_port(address, port))) return port;
-  throw Failure(fmt::format("cannot listen on {} port {}: either this computer has no such address, or the "
-                            "port is taken (--port chooses another one)",
-                            options.address, options.port));
+  throw Failure(
+      fmt::format("cannot listen on {} port {}: either this computer has no such address, or the "
+                  "port is taken (--port chooses another one)",
+                  options.address, options.port));
 }
 
 }  // namespace
