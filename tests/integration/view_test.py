@@ -95,7 +95,7 @@ class ViewTest(LiveDaemonTest):
             self.assertEqual(self.status(other.split("?")[0] + "events" + wrong), 403)
         port = url.rsplit(":", 1)[1].rstrip("/")
         taken = self.run_to_end(self.scree, "view", "--url", self.url, "--port", port)
-        self.assert_fails(taken, "is it taken")
+        self.assert_fails(taken, "the port is taken")
         self.done(self.scree, "view", "--token", "a b", code=2)
 
 
