@@ -199,6 +199,7 @@ void Pipeline::detect_in_map(bool ends_turn) {
   if (left > 0) mapper_->update_cloud();
   SeenCloud cloud = map.seen_cloud();
   cloud.robot = (mapper_->pose().translation - map.origin()).head<2>().cast<float>();
+  cloud.reach = map.search_reach();
   map_detector_.detect(cloud, found_, timer_);
   const Pose cloud_in_map{map.origin(), Eigen::Quaterniond::Identity()};
   for (Obstacle& obstacle : found_) move_into_parent(cloud_in_map, obstacle);

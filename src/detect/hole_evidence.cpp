@@ -44,6 +44,8 @@ void HoleEvidence::build(const SeenCloud& cloud, const GroundSurface& surface) {
     if (point.allFinite()) follow(cloud.origin_of(i), point, surface);
   });
   if (!cloud.passing.empty()) find_tops(surface);
+  robot_ = cloud.robot.value_or(Eigen::Vector2f::Zero());
+  reach_ = cloud.robot ? cloud.reach : std::numeric_limits<float>::infinity();
   for (const PassingBeam& beam : cloud.passing) follow_passing(beam, surface);
 }
 
@@ -136,7 +138,8 @@ void HoleEvidence::follow(const Eigen::Vector3f& origin, const Eigen::Vector3f& 
   }
 }
 
-/// Marks the way of a beam that did not come back, from where ground was due.
+/// Marks the way of a beam that did not come back, from where ground was due, as far as the cloud
+/// would tell of ground.
 void HoleEvidence::mark_lost(const Eigen::Vector3f& from, const Eigen::Vector3f& end,
                              const GroundSurface& surface) {
   const Eigen::Vector3f way = end - from;
@@ -145,7 +148,7 @@ void HoleEvidence::mark_lost(const Eigen::Vector3f& from, const Eigen::Vector3f&
   Eigen::Vector3f at = from;
   for (int i = 0; i < steps; ++i, at += stride) {
     const std::optional<std::size_t> inner = surface.inner_cell_at(at.x(), at.y());
-    if (!inner) return;
+    if (!inner || (at.head<2>() - robot_).squaredNorm() > reach_ * reach_) return;
     const std::size_t cell = *inner;
     if (surface.is_ground(cell)) {
       if (surface.height(at.x(), at.y()) - at.z() > kBelow) return;

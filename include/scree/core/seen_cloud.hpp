@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -24,6 +25,8 @@ struct SeenCloud {
   std::span<const Eigen::Vector3f> origins{};  ///< where each point was seen from; or one for all
   std::span<const PassingBeam> passing{};
   std::optional<Eigen::Vector2f> robot{};  ///< where it stands
+  /// Metres around the robot: what was seen farther off is not in the cloud.
+  float reach = std::numeric_limits<float>::infinity();
 
   /// @pre origins are known
   const Eigen::Vector3f& origin_of(std::size_t point) const {

@@ -50,6 +50,8 @@ private:
   bool has_ground_near(std::size_t cell, const GroundSurface& surface);
 
   bool knows_beams_ = false;
+  Eigen::Vector2f robot_ = Eigen::Vector2f::Zero();
+  float reach_ = 0;                           // metres around the robot, see SeenCloud
   FixedVector<float> into_, through_ground_;  // beams that ended below the ground, by cell
   FixedVector<std::uint16_t> beams_below_, lost_beams_;
   FixedVector<float> lowest_beam_;

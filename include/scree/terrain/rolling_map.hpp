@@ -47,6 +47,7 @@ public:
   /// The cloud with all that is known of its beams, in the cloud's frame.
   SeenCloud seen_cloud() const { return {cloud_, beams_, origins_, passing_}; }
   const Eigen::Vector3d& origin() const { return origin_; }
+  float search_reach() const { return static_cast<float>(settings_.search_reach); }
   /// What is known of a point in the map's frame, to the accuracy of FreeSpace's coarse cells.
   Occupancy occupancy_at(const Eigen::Vector3d& point) const;
   /// Whether a beam of the last two sweeps went through the coarse cell of a point in the map's

@@ -108,6 +108,14 @@ TEST(HoleEvidence, CountsBeamsThatDidNotComeBackWhereGroundWasDue) {
   EXPECT_EQ(world.evidence.lost_beams(before), 0) << "there they were above the ground";
   EXPECT_EQ(world.evidence.lost_beams(beyond), 5);
   EXPECT_NEAR(world.evidence.lowest_beam(beyond), -0.06, 0.06);
+  // Where the cloud ends, nothing tells that ground was seen.
+  SeenCloud seen{.points = world.cloud, .origins = {&sensor, 1}, .passing = lost};
+  seen.robot = sensor.head<2>();
+  for (const float reach : {1.0F, 1.2F}) {
+    seen.reach = reach;
+    world.evidence.build(seen, world.surface);
+    EXPECT_EQ(world.evidence.lost_beams(beyond), reach > 1.1F ? 5 : 0) << reach;
+  }
 }
 
 }  // namespace
