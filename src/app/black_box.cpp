@@ -143,6 +143,7 @@ void BlackBox::close_for_state(std::string_view reason, std::int64_t now_ns) {
   const std::int64_t pause_ns = nanoseconds_in(settings_.seconds) / 2;
   if (closed_ns_ && now_ns >= *closed_ns_ && now_ns < *closed_ns_ + pause_ns) return;
   close(reason, now_ns);
+  closed_ns_ = now_ns;
 }
 
 void BlackBox::close(std::string_view reason, std::int64_t now_ns) {
@@ -156,7 +157,6 @@ void BlackBox::close(std::string_view reason, std::int64_t now_ns) {
     std::error_code gone;
     for (const fs::path& file : files) fs::remove(file, gone);
   }
-  closed_ns_ = now_ns;
   forget_oldest_logs();
 }
 

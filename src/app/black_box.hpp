@@ -61,7 +61,7 @@ private:
   std::vector<std::uint8_t> event_;
   std::int64_t events_ = 0;
   std::uint64_t next_part_ = 0;
-  std::optional<std::int64_t> closed_ns_;
+  std::optional<std::int64_t> closed_ns_;  // for a state
   std::string problem_;
 };
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <scree/health_t.hpp>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "keep_up.hpp"
@@ -40,6 +41,9 @@ struct DetectorStatus {
 /// encoder the robot sees less well, and is not blind.
 class HealthWatch {
 public:
+  /// The reason of the last message of all.
+  static constexpr std::string_view kWasStopped = "screed was stopped";
+
   // A VLP-16 turns at least 5 times a second (its manual, rotation speed: 300 to 1200 rpm), so that
   // a turn takes 200 ms. Ground returns come in each turn; whole turns and the detector have 50 ms
   // more for what delays them.

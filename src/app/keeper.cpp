@@ -12,6 +12,7 @@
 #include <system_error>
 #include <utility>
 
+#include "health_watch.hpp"
 #include "metrics_text.hpp"
 #include "scree/clock/clocks.hpp"
 #include "scree/publish/publisher.hpp"
@@ -85,7 +86,7 @@ void Keeper::run() {
     drain(messages_);
     if (!box_) continue;
     box_->look_for_mark(wall_ns());
-    say(box_->problem());
+    say(said_of_box_, box_->problem());
   }
   drain(packets_);
   drain(messages_);
@@ -112,6 +113,7 @@ void Keeper::take_health(const KeptMessage& message) {
   health_t health;
   if (health.decode(message.bytes.data(), 0, static_cast<int>(message.bytes.size())) < 0) return;
   if (!metrics_file_.empty()) write_metrics(metrics_text(health));
+  if (health.reason == HealthWatch::kWasStopped) return;  // the ring is closed as "end"
   const bool is_blind = health.state != health_t::OK, is_stop = health.stop != 0;
   if (box_ && is_blind && !was_blind_) {
     box_->close_for_state("blind", message.time_ns);
@@ -138,14 +140,14 @@ void Keeper::write_metrics(const std::string& text) {
     std::filesystem::permissions(fresh, perms::group_read | perms::others_read,
                                  std::filesystem::perm_options::add, failed);
   if (!failed) std::filesystem::rename(fresh, file, failed);
-  say(failed ? "metrics.file: " + metrics_file_ + " cannot be written" : "");
+  say(said_of_metrics_, failed ? "metrics.file: " + metrics_file_ + " cannot be written" : "");
 }
 
 /// A sentence once, until there is another one.
-void Keeper::say(const std::string& problem) {
-  if (problem == said_) return;
+void Keeper::say(std::string& said, const std::string& problem) {
+  if (problem == said) return;
   if (!problem.empty()) spdlog::warn("{}", problem);
-  said_ = problem;
+  said = problem;
 }
 
 }  // namespace scree

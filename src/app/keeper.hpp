@@ -50,7 +50,7 @@ private:
   void take(const KeptMessage& message);
   void take_health(const KeptMessage& message);
   void write_metrics(const std::string& text);
-  void say(const std::string& problem);
+  static void say(std::string& said, const std::string& problem);
 
   std::optional<BlackBox> box_;
   std::string metrics_file_;
@@ -59,7 +59,7 @@ private:
   std::atomic<std::uint64_t> dropped_{0};
   std::uint64_t dropped_said_ = 0;
   bool was_blind_ = true, was_stopped_ = true;
-  std::string said_;
+  std::string said_of_box_, said_of_metrics_;
   std::atomic<bool> is_stopped_{false};
   std::thread thread_;
 };

@@ -57,7 +57,7 @@ void PublisherWorker::run() {
     }
   }
   health_.state = health_t::BLIND;
-  health_.reason = "screed was stopped";
+  health_.reason = HealthWatch::kWasStopped;
   const std::int64_t now_ns = steady_ns();
   drive_outputs(now_ns);
   status_ = get_status_();

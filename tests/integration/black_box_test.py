@@ -90,6 +90,11 @@ class BlackBoxTest(LiveDaemonTest):
             lists = [json.loads(line) for line in file]
         self.assertGreater(len(lists), 10)
         self.assertTrue(any(it["obstacles"] for it in lists))
+        # Whoever asks a robot that sees to end has not blinded it.
+        self.daemon.send_signal(signal.SIGTERM)
+        self.assertEqual(self.daemon.wait(PATIENCE), 0)
+        self.log_of("end")
+        self.assertEqual([name for name in os.listdir(self.path("box")) if "blind" in name], [])
 
     def test_metrics_say_what_health_says(self):
         self.start_all()

@@ -100,6 +100,42 @@ class CommandLineTest(ProgramTest):
         self.scree("detect", capture, "--viewpoint", "1", "2", "3", code=2)
         self.scree("evaluate", truth, lists)
 
+    def test_a_failure_leaves_what_was_there(self):
+        capture = self.simulate(1)
+        with open(os.path.join(capture, "lidar.pcap"), "rb") as file:
+            begin = file.read(30)
+        broken, kept = self.path("broken.pcap"), self.write("kept", "kept")
+        with open(broken, "wb") as file:
+            file.write(begin)
+        for command in (["detect"], ["decode", "--sensor", "lidar"]):
+            self.scree(*command, broken, "--out", kept, "--force", code=1)
+            self.assertEqual(self.read(kept), "kept")
+            self.scree(*command, broken, "--out", self.path("none"), code=1)
+        self.assertEqual([name for name in os.listdir(self.folder) if name.startswith("none")], [])
+        self.scree("detect", capture, "--out", kept, "--force")
+        self.assertIn("obstacles", self.read(kept))
+
+    def test_a_line_is_no_file_name_and_a_folder_no_file(self):
+        capture = self.simulate(1)
+        for command in (["picture", capture, capture], ["report", capture], ["simulate"]):
+            out = "--cloud" if command == ["simulate"] else "--out"
+            self.assert_fails(self.run_to_end(SCREE, *command, out, "-", "--force"), "no name of a file")
+        printed = self.scree("decode", capture, "--sensor", "imu", "--out", "-").stdout
+        self.assertEqual(printed, self.scree("decode", capture, "--sensor", "imu").stdout)
+        self.assert_fails(self.run_to_end(SCREE, "train", "--out", capture, "--force"), "is a folder")
+
+    def test_sweeps_of_two_runs_do_not_mix(self):
+        capture, part, folder = self.simulate(2), self.path("part"), self.path("sweeps")
+        self.scree("slice", capture, part, "--to", "1")
+        for command in (["decode", "--sensor", "lidar", "--out", "/dev/null", "--pcd"],
+                        ["detect", "--out", "/dev/null", "--stages"]):  # fmt: skip
+            counts = []
+            for source in (part, capture, part):
+                self.scree(*command, folder, source, "--force")
+                counts.append(len(os.listdir(folder)))
+            self.assertEqual(counts[0], counts[2])
+            self.assertLess(counts[0], counts[1])
+
     def test_a_picture_needs_a_list_of_its_time(self):
         capture, lists = self.simulate(1), self.path("lists.jsonl")
         self.scree("detect", capture, "--out", lists)

@@ -238,6 +238,7 @@ class DetectTest(ProgramTest):
         for points, words in [
             ([], "holds no points"),
             ([(nan, 0.0, 0.0), (inf, 0.0, 0.0), (0.0, -inf, 0.0)] * 50, "none of its 150 points"),
+            ([(nan, 0.0, 0.0)] * 199 + [(1.0, 0.0, 0.0)], "1 of its 200 points can be used"),
         ]:
             result = self.run_to_end(SCREE, "detect", self.write_pcd("none.pcd", points))
             self.assert_fails(result, words)

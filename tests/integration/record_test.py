@@ -149,6 +149,16 @@ class RecordTest(ProgramTest):
         shutil.rmtree(self.path("robot"))
         self.done(SCREE, "detect", self.recording, "--out", self.path("lists.jsonl"))
 
+    def test_sensors_that_are_not_there_by_the_settings_have_no_part(self):
+        config = self.write(
+            "lidar_alone.toml",
+            f"[lidar]\nport = {self.port}\n[imu]\ndevice = ''\n[encoder]\ninterface = ''\n",
+        )
+        said = self.run_to_end(SCREE, "record", self.recording, "--config", config, "--seconds", "1").stderr
+        self.assertEqual(sorted(os.listdir(self.recording)), ["lidar.pcap", "scree.toml"])
+        for word in ("IMU", "imu", "CAN"):
+            self.assertNotIn(word, said)
+
     def test_missing_sensors_are_waited_for_and_said(self):
         self.mti.port = self.path("elsewhere")
         done = self.run_to_end(SCREE, "record", self.recording, "--config", self.config,

@@ -55,6 +55,16 @@ class SliceTest(ProgramTest):
         self.assertEqual(score["coverage"], 1)
         self.assertGreater(score["all"]["f1"], 0.5)
 
+    def test_nothing_of_an_older_capture_stays(self):
+        self.done("simulate", self.part, "--seconds", "1", "--scene", "rough")
+        self.done("slice", os.path.join(self.whole, "lidar.pcap"), self.part, "--to", "0.5", "--force")
+        self.assertEqual(os.listdir(self.part), ["lidar.pcap"])
+        config = os.path.join(self.part, "scree.toml")
+        with open(config, "w") as file:
+            file.write("[lidar]\nmin_range = 0.7\n")
+        self.done("slice", self.whole, self.part, "--config", config, "--force")
+        self.assertIn("0.7", self.text(self.part, "scree.toml"))
+
     def test_a_file_becomes_a_folder(self):
         lidar = os.path.join(self.whole, "lidar.pcap")
         self.done("slice", lidar, self.part, "--to", "0.5")
@@ -71,7 +81,7 @@ class SliceTest(ProgramTest):
         result = self.run_to_end(SCREE, "slice", self.whole, self.part, "--from", "2", "--to", "1")
         self.assertEqual(result.returncode, 2)
         result = self.run_to_end(SCREE, "slice", self.whole, self.whole, "--to", "1")
-        self.assert_fails(result, "is there already")
+        self.assert_fails(result, "a part cannot take the place")
         self.assert_fails(self.run_to_end(SCREE, "slice", self.path("none"), self.part),
                           "no such file or folder")  # fmt: skip
 

@@ -175,6 +175,7 @@ void add_simulate(CLI::App& app) {
                                     "write one reconstructed cloud instead, and FILE.truth.json");
   cloud->excludes(folder);
   command->add_option("--seed", options->capture.seed, "of terrain and noise")
+      ->check(CLI::Range(0.0, 1e15))
       ->capture_default_str();
   command->add_option("--scene", options->scene, "kind of ground [easy; a cloud: like the paper's]")
       ->check(CLI::IsMember(all_scenes()));

@@ -208,6 +208,7 @@ void add_train(CLI::App& app) {
       ->required()
       ->type_name("FILE");
   command->add_option("--seed", options->seed, "first terrain of the training part")
+      ->check(CLI::Range(0.0, 1e15))
       ->capture_default_str();
   const auto terrains = CLI::Range(std::size_t{1}, std::size_t{kPart});
   command->add_option("--training", options->training, "terrains to train on")

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string_view>
@@ -7,6 +8,11 @@
 #include "scree/core/result.hpp"
 
 namespace scree {
+
+/// What a folder of a capture may hold.
+inline constexpr std::array<std::string_view, 8> kCaptureFiles = {
+    "lidar.pcap", "lidar.pcapng", "lidar.lcm",  "imu.pcap",
+    "imu.pcapng", "can.log",      "truth.json", "scree.toml"};
 
 /// The lidar's file of a capture: the capture itself when it is a file, else lidar.pcap,
 /// lidar.pcapng or lidar.lcm in its folder.

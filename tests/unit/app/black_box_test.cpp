@@ -124,6 +124,16 @@ TEST_F(BlackBoxTest, AStateThatComesAndGoesIsNotClosedEachTime) {
   EXPECT_THAT(seconds_in(logs()[1]), ElementsAre(1, 2, 3, 4, 5, 6));
 }
 
+TEST_F(BlackBoxTest, AMarkHoldsNoStateUp) {
+  BlackBox box = open();
+  feed(box, 0, 2);
+  box.close("mark", kBegin + 2 * kSecond);
+  feed(box, 2, 4);
+  box.close_for_state("blind", kBegin + 4 * kSecond);
+  ASSERT_EQ(logs().size(), 2U);
+  EXPECT_THAT(logs()[1], EndsWith("_blind.lcm"));
+}
+
 TEST_F(BlackBoxTest, OnlySoManyLogsStay) {
   settings_.keep = 2;
   BlackBox box = open();

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import shutil
 import subprocess
+import sys
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -50,12 +51,13 @@ def find_scree(scree: str | None = None) -> str:
 
 
 def run_scree(scree: str | None, *arguments: str | Path) -> str:
-    """What it printed. ReadError with its last sentence where it failed."""
+    """What it printed; its remarks go to stderr. ReadError with its last sentence where it failed."""
     command = [find_scree(scree), *map(str, arguments)]
     done = subprocess.run(command, capture_output=True, text=True, errors="backslashreplace", check=False)
     if done.returncode != 0:
         lines = done.stderr.strip().splitlines() or [f"{command[0]} ended with {done.returncode}"]
         raise ReadError(lines[-1].removeprefix("scree: "))
+    sys.stderr.write(done.stderr)
     return done.stdout
 
 
@@ -105,8 +107,10 @@ def _read_capture(source: Path, scree: str | None, config: str | Path | None) ->
 def _read_lines(source: Path) -> Iterator[Record]:
     with source.open("rb") as file:
         for number, line in enumerate(file, 1):
+            if not line.strip():
+                continue
             try:
-                record = _stamped(_record_of(json.loads(line.decode())))
+                record = _stamped(_record_of(json.loads(line.decode("utf-8-sig"))))
             except _WRONG as error:
                 what = f"it has no {error}" if isinstance(error, KeyError) else error
                 raise ReadError(f"{source}:{number}: neither list nor grid nor health: {what}") from error

@@ -1,9 +1,14 @@
 #include "common/outputs.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
-#include <array>
+#include <cerrno>
+#include <cstring>
+#include <string_view>
 
 #include "commands.hpp"
+#include "scree/capture/capture.hpp"
 
 namespace scree::cli {
 namespace {
@@ -17,10 +22,9 @@ bool is_read(const fs::path& file, const fs::path& read) {
   std::error_code none;
   if (fs::equivalent(file, read, none)) return true;
   if (!fs::is_directory(read, none)) return false;
-  constexpr std::array kParts = {"lidar.pcap", "lidar.pcapng", "lidar.lcm",  "imu.pcap",
-                                 "imu.pcapng", "can.log",      "truth.json", "scree.toml"};
-  return std::ranges::any_of(
-      kParts, [&](const char* part) { return fs::equivalent(file, read / part, none); });
+  return std::ranges::any_of(kCaptureFiles, [&](std::string_view part) {
+    return fs::equivalent(file, read / part, none);
+  });
 }
 
 bool are_one(const fs::path& a, const fs::path& b) {
@@ -31,7 +35,20 @@ bool are_one(const fs::path& a, const fs::path& b) {
 
 bool is_file(const fs::path& file) {
   std::error_code none;
-  return !file.empty() && file != "-" && !fs::is_other(file, none);
+  return !file.empty() && !fs::is_other(file, none);
+}
+
+/// Whether a file can be written: it, and its folder, where it is made.
+void require_writable(const fs::path& file) {
+  std::error_code none;
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  if (fs::is_directory(file, none)) throw Failure(file.string() + " is a folder");
+  if (!fs::is_directory(folder, none)) {
+    throw Failure("cannot write " + file.string() + ": there is no folder " + folder.string());
+  }
+  if (access(folder.c_str(), W_OK) != 0) {
+    throw Failure("cannot write " + file.string() + ": " + std::strerror(errno));
+  }
 }
 
 }  // namespace
@@ -45,6 +62,7 @@ void Outputs::require_free(std::initializer_list<fs::path> files,
   std::error_code none;
   for (const fs::path& file : files) {
     if (!is_file(file)) continue;
+    if (file == "-") throw Failure("- is no name of a file: ./- is one");
     if (std::ranges::any_of(read, [&](const fs::path& each) { return is_read(file, each); })) {
       throw Failure(file.string() + " is read: it cannot be written, too");
     }
@@ -56,10 +74,7 @@ void Outputs::require_free(std::initializer_list<fs::path> files,
     if (!force_ && is_one && !fs::is_empty(file, none)) {
       throw Failure(file.string() + " is there already" + kForce);
     }
-    if (file.has_parent_path() && !fs::is_directory(file.parent_path(), none)) {
-      throw Failure("cannot write " + file.string() + ": there is no folder " +
-                    file.parent_path().string());
-    }
+    require_writable(file);
   }
 }
 
@@ -68,6 +83,13 @@ void Outputs::require_empty(const fs::path& folder) const {
   if (force_ || folder.empty() || !fs::exists(folder, error)) return;
   if (!fs::is_directory(folder, error) || !fs::is_empty(folder, error)) {
     throw Failure(folder.string() + " is there already, and not an empty folder" + kForce);
+  }
+}
+
+void Outputs::remove_sweeps(const fs::path& folder) {
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(folder, none)) {
+    if (entry.path().filename().string().starts_with("sweep_")) fs::remove_all(entry.path(), none);
   }
 }
 

@@ -9,9 +9,10 @@ constexpr std::size_t kFull = 1 << 20;
 
 }  // namespace
 
-CsvFile::CsvFile(const std::string& name) : name_(name.empty() ? "standard output" : name) {
+CsvFile::CsvFile(const std::string& name)
+    : fresh_(name), name_(name.empty() ? "standard output" : name) {
   if (!name.empty()) {
-    owned_.reset(std::fopen(name.c_str(), "wb"));
+    owned_.reset(std::fopen(fresh_.path().c_str(), "wb"));
     if (!owned_) throw Failure("cannot write " + name);
   }
   text_.reserve(kFull + 1024);
@@ -31,6 +32,9 @@ void CsvFile::end_line() {
 void CsvFile::close() {
   flush();
   if (std::fflush(file()) != 0) throw Failure("cannot write " + name_);
+  if (!owned_) return;
+  owned_.reset();
+  fresh_.take_place();
 }
 
 void CsvFile::flush() {

@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "common/fresh_file.hpp"
+
 namespace scree::cli {
 
 /// CSV with the shortest digits that read back to the same number.
@@ -25,7 +27,7 @@ public:
   /// A value that is not there.
   void nothing() { text_ += ','; }
   void end_line();
-  /// Throws Failure where not everything could be written.
+  /// Throws Failure where not everything could be written. What a file held stays until then.
   void close();
 
 private:
@@ -36,6 +38,7 @@ private:
   std::FILE* file() { return owned_ ? owned_.get() : stdout; }
   void flush();
 
+  FreshFile fresh_;
   std::string name_, text_;
   std::unique_ptr<std::FILE, Close> owned_;
 };

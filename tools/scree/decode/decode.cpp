@@ -37,6 +37,7 @@ void add_decode(CLI::App& app) {
     if (!options->pcd.empty() && options->sensor != "lidar") {
       throw CLI::ValidationError("--pcd", "is for the lidar");
     }
+    if (options->out == "-") options->out.clear();
     options->outputs.require_free({options->out}, {options->capture, options->config});
     options->outputs.require_empty(options->pcd);
     sensors().at(options->sensor)(*options);

@@ -64,8 +64,8 @@ void decode_imu(const DecodeOptions& options) {
                             write_measurement(csv, t_ns, measurement);
                           });
   capture.play(stream);
-  csv.close();
   report_capture(capture, stream);
+  csv.close();
   say(steps);
 }
 

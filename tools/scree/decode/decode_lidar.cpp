@@ -42,6 +42,7 @@ void decode_lidar(const DecodeOptions& options) {
     std::error_code error;
     fs::create_directories(options.pcd, error);
     if (error) throw Failure("cannot make the folder " + options.pcd + ": " + error.message());
+    Outputs::remove_sweeps(options.pcd);
   }
   CsvFile csv(options.out);
   csv.line("t_ns,packet,block,channel,azimuth_deg,range_m,reflectivity,x,y,z");
@@ -56,8 +57,8 @@ void decode_lidar(const DecodeOptions& options) {
   const auto on_packet = [&](const velodyne::DecodedPacket& packet) { write_returns(packet, csv); };
   const auto stream = std::make_unique<velodyne::LidarStream>(settings.lidar, on_sweep, on_packet);
   capture.play(*stream);
-  csv.close();
   report_capture(capture, *stream);
+  csv.close();
   say(steps);
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "commands.hpp"
+#include "common/fresh_file.hpp"
 #include "common/outputs.hpp"
 #include "detection/pipeline_capture.hpp"
 #include "detection/stages.hpp"
@@ -30,9 +31,9 @@ struct DetectOptions {
 /// Lists or grids as lines of JSON, in a file or on standard output.
 class LineWriter {
 public:
-  explicit LineWriter(const fs::path& file) : to_stdout_(file.empty() || file == "-") {
+  explicit LineWriter(const fs::path& file) : fresh_(file), to_stdout_(file.empty()) {
     if (to_stdout_) return;
-    file_.open(file, std::ios::binary);
+    file_.open(fresh_.path(), std::ios::binary);
     if (!file_) throw Failure("cannot write " + file.string());
   }
 
@@ -48,14 +49,17 @@ public:
   }
 
   void finish() {
-    if (!to_stdout_ && !file_.flush())
-      throw Failure("cannot write what was found: the disk may be full");
+    if (to_stdout_) return;
+    file_.close();
+    if (!file_) throw Failure("cannot write what was found: the disk may be full");
+    fresh_.take_place();
   }
 
   /// Where counts go, so that they do not mix with lists.
   std::FILE* other_output() const { return to_stdout_ ? stderr : stdout; }
 
 private:
+  FreshFile fresh_;
   bool to_stdout_;
   std::ofstream file_;
   std::string line_;
@@ -75,14 +79,22 @@ Eigen::Vector3f viewpoint_of(const DetectOptions& options, const PcdCloud& cloud
   return (stated - cloud.origin).cast<float>();
 }
 
+std::string usable(const StageCounts& counts) {
+  const std::size_t usable = counts.input - counts.refused;
+  return usable == 0 ? "none" : std::to_string(usable);
+}
+
 /// An empty list says "looked, and nothing there".
 void require_points(const StageCounts& counts, const fs::path& file) {
-  if (counts.voxels > 0) return;
+  constexpr double kNearlyAll = 0.95;  // of the points: a depth camera's may be mostly no numbers
+  const bool has_few =
+      static_cast<double>(counts.refused) > kNearlyAll * static_cast<double>(counts.input);
+  if (counts.voxels > 0 && !has_few) return;
   throw Failure(counts.input == 0
                     ? fmt::format("{}: holds no points", file.string())
-                    : fmt::format("{}: none of its {} points can be used: they are not finite or "
-                                  "too far apart",
-                                  file.string(), counts.input));
+                    : fmt::format("{}: {} of its {} points can be used: the others are not finite "
+                                  "or too far apart; are they in metres?",
+                                  file.string(), usable(counts), counts.input));
 }
 
 void detect_in_cloud(const DetectOptions& options) {
@@ -132,7 +144,8 @@ void detect_in_capture(const DetectOptions& options) {
   Pipeline& pipeline = capture.pipeline();
   LineWriter writer(options.out);
   std::optional<LineWriter> grids;
-  if (!options.grid.empty()) grids.emplace(options.grid);
+  if (!options.grid.empty()) grids.emplace(options.grid == "-" ? fs::path() : options.grid);
+  if (!options.stages.empty()) Outputs::remove_sweeps(options.stages);
   std::size_t sweeps = 0;
   bool has_grid = false;
   capture.play([&](const Sweep& sweep) {
@@ -188,11 +201,13 @@ void add_detect(CLI::App& app) {
       ->expected(3);
   options->outputs.add_to(*command);
   command->callback([options] {
-    options->outputs.require_free({options->out, options->grid}, {options->input, options->config});
-    const bool is_printed = options->out.empty() || options->out == "-";
-    if (options->grid == "-" && is_printed) {
+    if (options->out == "-") options->out.clear();
+    const bool prints_grid = options->grid == "-";
+    if (prints_grid && options->out.empty()) {
       throw CLI::ValidationError("--grid", "standard output has the lists: name a file for one");
     }
+    options->outputs.require_free({options->out, prints_grid ? fs::path() : options->grid},
+                                  {options->input, options->config});
     const bool is_cloud = is_pcd(options->input) || options->input.extension() == ".pcd";
     if (!options->viewpoint.empty() && !is_cloud) {
       throw CLI::ValidationError("--viewpoint", "is for a cloud");

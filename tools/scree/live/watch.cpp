@@ -195,7 +195,7 @@ void add_watch(CLI::App& app) {
                  "a line for each grid, too: how many cells are free, occupied, a drop, unknown")
       ->excludes(json);
   command->add_option("--count", options->count, "end after this many lists")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1, 1'000'000'000));
   command
       ->add_option("--seconds", options->seconds, "end after this time; it fails if nothing came")
       ->check(CLI::PositiveNumber);

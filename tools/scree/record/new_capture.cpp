@@ -9,6 +9,7 @@
 #include <string>
 
 #include "commands.hpp"
+#include "scree/capture/capture.hpp"
 #include "scree/config/configuration.hpp"
 
 namespace scree::cli {
@@ -46,8 +47,13 @@ std::string text_of(const fs::path& config, const Configuration& configuration) 
 
 }  // namespace
 
-void make_capture_folder(const fs::path& folder, const Outputs& outputs) {
+void make_capture_folder(const fs::path& folder, const Outputs& outputs, const fs::path& config) {
   outputs.require_empty(folder);
+  std::error_code none;
+  for (const std::string_view name : kCaptureFiles) {
+    const fs::path file = folder / name;
+    if (!fs::equivalent(file, config, none)) fs::remove(file, none);
+  }
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw Failure(fmt::format("cannot make {}: {}", folder.string(), error.message()));

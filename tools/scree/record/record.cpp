@@ -8,6 +8,7 @@
 #include <csignal>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -99,14 +100,20 @@ void record(const RecordOptions& options) {
   value_or_fail(encoder::with_dbc(settings.encoder, config));
   HostClock clock;
   LidarRecorder lidar(settings.lidar, clock);
-  make_capture_folder(folder, options.outputs);
+  make_capture_folder(folder, options.outputs, config);
   keep_config(config, folder);
   lidar.create(folder / "lidar.pcap");
-  ImuRecorder imu(settings.imu, folder / "imu.pcap", clock);
-  CanRecorder can(settings.encoder.interface, folder / "can.log", clock);
+  std::optional<ImuRecorder> imu;
+  if (!settings.imu.device.empty()) imu.emplace(settings.imu, folder / "imu.pcap", clock);
+  std::optional<CanRecorder> can;
+  if (!settings.encoder.interface.empty()) {
+    can.emplace(settings.encoder.interface, folder / "can.log", clock);
+  }
 
   fmt::print(stderr, "scree: recording to {}\n", folder.string());
-  const std::vector<Recorder*> recorders = {&lidar, &imu, &can};
+  std::vector<Recorder*> recorders = {&lidar};
+  if (imu) recorders.push_back(&*imu);
+  if (can) recorders.push_back(&*can);
   Report report(recorders);
   const double seconds = run(recorders, options.seconds, report);
   for (Recorder* recorder : recorders) recorder->close();

@@ -114,16 +114,16 @@ void cut(const SliceOptions& options) {
   const Settings settings = capture_settings(options.capture, options.config);
   const Slice slice = find_slice(options, settings);
   say(slice.steps);
-  make_capture_folder(options.folder, options.outputs);
   const fs::path source = fs::is_directory(options.capture)
                               ? options.capture
                               : fs::absolute(options.capture).parent_path();
-  if (fs::equivalent(source, options.folder)) {
+  std::error_code none;
+  if (fs::equivalent(source, options.folder, none)) {
     throw Failure("a part cannot take the place of the capture that it is cut from");
   }
-  if (const auto config = settings_file(options.capture, options.config)) {
-    keep_config(*config, options.folder);
-  }
+  const auto config = settings_file(options.capture, options.config);
+  make_capture_folder(options.folder, options.outputs, config.value_or(fs::path()));
+  if (config) keep_config(*config, options.folder);
   if (lidar_file(options.capture)) {
     copy_lidar(options.capture, settings, slice, options.folder / "lidar.pcap");
   }

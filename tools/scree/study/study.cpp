@@ -176,7 +176,9 @@ void add_study(CLI::App& app) {
   command->add_option("--out", options->out, "folder for table and picture")->required();
   command->add_option("--config", options->config, "configuration; default: the shipped settings")
       ->check(CLI::ExistingFile);
-  command->add_option("--seed", options->seed, "first terrain")->capture_default_str();
+  command->add_option("--seed", options->seed, "first terrain")
+      ->check(CLI::Range(0.0, 1e15))
+      ->capture_default_str();
   command->add_option("--seeds", options->seeds, "terrains; default: as listed below")
       ->check(CLI::Range(1, 100'000));
   command->add_option("--training", options->training, "terrains to train on, where a study trains")

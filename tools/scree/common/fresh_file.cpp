@@ -1,0 +1,33 @@
+#include "common/fresh_file.hpp"
+
+#include <system_error>
+
+#include "commands.hpp"
+
+namespace scree::cli {
+
+namespace fs = std::filesystem;
+
+FreshFile::FreshFile(const fs::path& file) : file_(file), fresh_(file) {
+  std::error_code none;
+  if (file.empty() || fs::is_other(file, none)) return;
+  // Of a link what it leads to.
+  if (const fs::path target = fs::canonical(file, none); !none) file_ = target;
+  fresh_ = file_;
+  fresh_ += ".new";
+}
+
+FreshFile::~FreshFile() {
+  std::error_code none;
+  if (fresh_ != file_) fs::remove(fresh_, none);
+}
+
+void FreshFile::take_place() {
+  if (fresh_ == file_) return;
+  std::error_code error;
+  fs::rename(fresh_, file_, error);
+  if (error) throw Failure("cannot write " + file_.string() + ": " + error.message());
+  fresh_ = file_;
+}
+
+}  // namespace scree::cli
