@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <limits>
+#include <string_view>
 #include <utility>
 
 #include "scree/motion/sync_buffer_of.hpp"
@@ -25,28 +26,32 @@ Result<Network> load_network(const std::string& name, const std::filesystem::pat
   return Network::load(*file);
 }
 
-Result<Network> load_network(const DetectSettings& settings,
+/// @param section of the settings, for who reads of a mistake
+Result<Network> load_network(const DetectSettings& settings, std::string_view section,
                              const std::filesystem::path& config_file) {
   auto network = load_network(settings.network, config_file);
   const std::size_t features = settings.method == Method::edges ? kPaperFeatures : kFeatures;
   if (network && network->inputs() > features) {
-    return fail(fmt::format("{} takes {} features, and method = \"{}\" has {}", settings.network,
-                            network->inputs(), name_of(settings.method), features));
+    return fail(fmt::format(
+        "{0}.network: {1} takes {2} features, and {0}.method = \"{3}\" has {4}: name a network "
+        "that "
+        "was trained with it",
+        section, settings.network, network->inputs(), name_of(settings.method), features));
   }
   return network;
 }
 
 Result<Detector> make_detector(const DetectSettings& settings, const DetectorLimits& limits,
                                const std::filesystem::path& config_file) {
-  auto network = load_network(settings, config_file);
+  auto network = load_network(settings, "detect.cloud", config_file);
   if (!network) return tl::make_unexpected(network.error());
   return Detector(settings, limits, *std::move(network));
 }
 
 Result<Networks> load_networks(const Settings& settings, const std::filesystem::path& config_file) {
-  auto map = load_network(settings.detect_map, config_file);
+  auto map = load_network(settings.detect_map, "detect.map", config_file);
   if (!map) return tl::make_unexpected(map.error());
-  auto sweep = load_network(settings.detect_sweep, config_file);
+  auto sweep = load_network(settings.detect_sweep, "detect.sweep", config_file);
   if (!sweep) return tl::make_unexpected(sweep.error());
   if (settings.track.network.empty()) return Networks{*map, *sweep, std::nullopt};
   auto judge = load_network(settings.track.network, config_file);

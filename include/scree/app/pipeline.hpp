@@ -124,8 +124,8 @@ private:
 /// The weights in a file that a setting names.
 Result<Network> load_network(const std::string& name, const std::filesystem::path& config_file);
 Result<Networks> load_networks(const Settings& settings, const std::filesystem::path& config_file);
-/// A detector with its weights, for clouds (detect.cloud), the map (detect.map) or sweeps
-/// (detect.sweep). The network must not ask for features that the method has not.
+/// A detector with its weights, for clouds (detect.cloud). The network must not ask for features
+/// that the method has not.
 Result<Detector> make_detector(const DetectSettings& settings, const DetectorLimits& limits,
                                const std::filesystem::path& config_file);
 

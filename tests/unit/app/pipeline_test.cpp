@@ -72,8 +72,10 @@ TEST(Pipeline, ANetworkThatAsksForMoreFeaturesThanTheMethodHasIsRefused) {
   settings.detect_map.method = Method::edges;
   const auto made = Pipeline::make(settings, config_file);
   ASSERT_FALSE(made);
-  EXPECT_EQ(made.error().message,
-            "network_map.txt takes 33 features, and method = \"edges\" has 5");
+  EXPECT_EQ(
+      made.error().message,
+      "detect.map.network: network_map.txt takes 33 features, and detect.map.method = \"edges\" "
+      "has 5: name a network that was trained with it");
   settings.detect_map.network = "network_paper.txt";
   EXPECT_TRUE(Pipeline::make(settings, config_file));
 }

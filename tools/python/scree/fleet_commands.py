@@ -33,10 +33,13 @@ def _run(options: argparse.Namespace) -> int:
     )
     failed = [row for row in rows if not row["ok"]]
     stored = sum(bool(row["was_stored"]) for row in rows)
-    print(f"{shown(options.out)}: {len(rows)} captures, {stored} of them done before, {len(failed)} failed")
+    print(
+        f"{shown(options.out)}: {len(rows)} captures, {stored} of them done before or of the same content, "
+        f"{len(failed)} failed"
+    )
     for row in failed[:10]:
         print(shown(f"scree-fleet: {row['capture']}: {row['reason']}"), file=sys.stderr)
-    return 0
+    return 1 if len(failed) == len(rows) else 0
 
 
 def _report(options: argparse.Namespace) -> int:

@@ -317,7 +317,9 @@ def test_tables_and_page_of_two_versions(pretender, tmp_path, capsys):
     made_up(drives, 3, fails="info")
     arguments = ["--scree", pretender, "--workers", "1"]
     assert main(["run", str(drives), "--out", str(old), *arguments]) == 0
-    assert "4 captures, 0 of them done before, 1 failed" in capsys.readouterr().out
+    assert "4 captures, 0 of them done before or of the same content, 1 failed" in capsys.readouterr().out
+    alone = ["run", str(drives / "drive003"), "--out", str(tmp_path / "alone"), *arguments]
+    assert main(alone) == 1  # all have failed
     matches = pq.read_table(old / "matches.parquet").to_pylist()
     assert [row["outcome"] for row in matches] == ["right", "missed", "invented"] * 3
     other = PRETENDER.replace('what["right"]', '{9: 6, 3: 4, 6: 6}[what["right"]]')
