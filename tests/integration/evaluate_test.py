@@ -197,8 +197,6 @@ class EvaluateTest(ProgramTest):
         later = json.dumps({**self.line(), "stamp_ns": 5})
         bad_lists = [
             good_lists[:50],
-            "\n",
-            good_lists + "\n\n" + good_lists,
             later + "\n" + good_lists,
             self.line(kind="flying"),
             self.line(center=[1, 2]),
@@ -213,6 +211,9 @@ class EvaluateTest(ProgramTest):
             {**self.line(), "obstacles": {}},
         ]
         truth = self.write("t.json", good_truth)
+        for blank in ("\n\n", "\r\n \n"):
+            spaced = self.scree("evaluate", truth, self.write("b.jsonl", good_lists + blank))
+            self.assertEqual(spaced.stdout, self.scree("evaluate", truth, lists).stdout)
         for bad in bad_lists:
             said = self.scree("evaluate", truth, self.write("b.jsonl", bad), code=1).stderr
             self.assertEqual(len(said.splitlines()), 1, said)
