@@ -33,9 +33,8 @@ Result<Network> load_network(const DetectSettings& settings, std::string_view se
   const std::size_t features = settings.method == Method::edges ? kPaperFeatures : kFeatures;
   if (network && network->inputs() > features) {
     return fail(fmt::format(
-        "{0}.network: {1} takes {2} features, and {0}.method = \"{3}\" has {4}: name a network "
-        "that "
-        "was trained with it",
+        "{0}.network: {1} takes {2} features, and {0}.method = \"{3}\" has {4}: "
+        "name a network that was trained with it",
         section, settings.network, network->inputs(), name_of(settings.method), features));
   }
   return network;
