@@ -197,6 +197,8 @@ class EvaluateTest(ProgramTest):
         later = json.dumps({**self.line(), "stamp_ns": 5})
         bad_lists = [
             good_lists[:50],
+            "\n",
+            good_lists + "\n\n" + good_lists,
             later + "\n" + good_lists,
             self.line(kind="flying"),
             self.line(center=[1, 2]),

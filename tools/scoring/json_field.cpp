@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <istream>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -18,6 +19,11 @@ Json parse_json(const std::string& text) {
     const std::size_t end = said.find("] ");
     throw JsonFault(end == std::string::npos ? said : said.substr(end + 2));
   }
+}
+
+bool is_blank_end(std::istream& stream, const std::string& line, int number) {
+  return number > 1 && line.find_first_not_of(" \t\r") == std::string::npos &&
+         stream.peek() == std::istream::traits_type::eof();
 }
 
 JsonField::JsonField(const Json& value, std::string where)

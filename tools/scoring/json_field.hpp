@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
+#include <iosfwd>
 #include <nlohmann/json_fwd.hpp>
 #include <stdexcept>
 #include <string>
@@ -19,6 +20,10 @@ struct JsonFault : std::runtime_error {
 
 /// Throws JsonFault that names line and column where the text is no JSON.
 nlohmann::json parse_json(const std::string& text);
+/// Whether a line is the blank one that some editors leave at the end of a file.
+/// @param stream that it was read from
+/// @param number of the line, from 1 on
+bool is_blank_end(std::istream& stream, const std::string& line, int number);
 
 /// A value of a JSON file and where it stands. Whatever is missing, of another type or out of range
 /// throws JsonFault. Members that nobody asks for are allowed.

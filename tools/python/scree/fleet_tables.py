@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any
@@ -13,7 +12,7 @@ import pyarrow.parquet as pq
 
 from .fleet import Row
 from .parquet_export import LISTS, OBSTACLES, list_row, obstacle_rows
-from .read import read, shown
+from .read import read, replacing, shown
 from .records import ObstacleList
 
 KEY = pa.field("key", pa.string())
@@ -134,12 +133,10 @@ def _matches(folder: Path) -> list[Row]:
 def _write(file: Path, schema: pa.Schema, parts: Iterable[list[Row]], most: int = 100_000) -> None:
     """In groups of rows, so that no more than `most` and a part are in memory."""
     waiting: list[Row] = []
-    fresh = file.with_suffix(".new")
-    with pq.ParquetWriter(fresh, schema) as writer:
+    with replacing(file) as fresh, pq.ParquetWriter(fresh, schema) as writer:
         for part in parts:
             waiting += part
             if len(waiting) >= most:
                 writer.write_table(pa.Table.from_pylist(waiting, schema=schema))
                 waiting = []
         writer.write_table(pa.Table.from_pylist(waiting, schema=schema))
-    os.replace(fresh, file)

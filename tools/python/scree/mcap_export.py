@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import subprocess
 import tomllib
 from collections.abc import Iterator
@@ -15,7 +14,7 @@ import foxglove
 from foxglove import channels as fc
 from foxglove import messages as fm
 
-from .read import ReadError, Record, find_scree, is_capture, read, run_scree
+from .read import ReadError, Record, find_scree, is_capture, read, replacing, run_scree
 from .records import Grid, Obstacle, ObstacleList, Pose
 
 BLUE, ORANGE, PURPLE = (0.0, 0.447, 0.698), (0.835, 0.369, 0.0), (0.63, 0.23, 0.47)
@@ -244,14 +243,9 @@ def export_mcap(
         raise ReadError(f"{file} is there already: --force overwrites it")
     if file.is_dir():
         raise ReadError(f"{file} is a folder")
-    fresh = file.with_name(file.name + ".new")
-    fresh.touch()  # foxglove's error would not name the file
-    try:
-        count = _write(source, fresh, scree, config, with_cloud)
-        os.replace(fresh, file)
-    finally:
-        fresh.unlink(missing_ok=True)
-    return count
+    with replacing(file) as fresh:
+        fresh.touch()  # foxglove's error would not name the file
+        return _write(source, fresh, scree, config, with_cloud)
 
 
 def _write(source: Path, file: Path, scree: str | None, config: str | Path | None, with_cloud: bool) -> int:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import Any
 
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from .read import Health, ReadError, read
+from .read import Health, ReadError, read, replacing
 from .records import ObstacleList, distance
 
 Row = dict[str, Any]
@@ -205,7 +204,6 @@ def export_parquet(
         raise ReadError(f"{source}: a record does not fit into the tables: {error}") from error
     folder.mkdir(parents=True, exist_ok=True)
     for name, table in tables.items():
-        fresh = folder / f"{name}.new"
-        pq.write_table(table, fresh)
-        os.replace(fresh, folder / f"{name}.parquet")
+        with replacing(folder / f"{name}.parquet") as fresh:
+            pq.write_table(table, fresh)
     return {name: len(table) for name, table in tables.items()}

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from struct import error as StructError
 from typing import Any
@@ -61,6 +63,17 @@ def run_scree(scree: str | None, *arguments: str | Path) -> str:
     return done.stdout
 
 
+@contextmanager
+def replacing(file: Path) -> Iterator[Path]:
+    """Where to write what takes the place of a file when it is whole; after a failure nothing is left of it."""
+    fresh = file.with_name(file.name + ".new")
+    try:
+        yield fresh
+        os.replace(fresh, file)
+    finally:
+        fresh.unlink(missing_ok=True)
+
+
 def is_capture(source: Path) -> bool:
     """Whether it holds sensor data, as far as its kind tells."""
     return source.is_dir() or source.suffix in (".pcap", ".pcapng")
@@ -107,8 +120,8 @@ def _read_capture(source: Path, scree: str | None, config: str | Path | None) ->
 def _read_lines(source: Path) -> Iterator[Record]:
     with source.open("rb") as file:
         for number, line in enumerate(file, 1):
-            if not line.strip():
-                continue
+            if number > 1 and not line.strip() and not file.peek(1):
+                break  # the blank line that some editors leave at the end
             try:
                 record = _stamped(_record_of(json.loads(line.decode("utf-8-sig"))))
             except _WRONG as error:

@@ -117,7 +117,7 @@ std::vector<ObstacleList> read_detections(const std::filesystem::path& file) {
   std::string line;
   for (int number = 1; read_line(stream, line); ++number) {
     progress(position += line.size() + 1);
-    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    if (is_blank_end(stream, line, number)) break;
     try {
       const auto json = parse_json(line);
       if (JsonField(json).has("health")) continue;

@@ -168,7 +168,7 @@ void for_each_line(const std::filesystem::path& file,
   if (!stream) throw Failure("cannot read " + file.string());
   std::string line;
   for (int number = 1; std::getline(stream, line); ++number) {
-    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    if (is_blank_end(stream, line, number)) break;
     try {
       take(parse_json(line));
     } catch (const JsonFault& fault) {
