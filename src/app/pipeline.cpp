@@ -119,7 +119,15 @@ void Pipeline::process_turn(const Sweep& sweep) {
     detect_in_sweep(motion_ != nullptr ? mapper_->pose() : Pose());
   }
   report_setup();
-  has_looked_ = sweep.is_whole && !ground().empty();
+  has_looked_ = sweep.is_whole && !ground().empty() && had_room();
+}
+
+/// Whether most of a turn's points found room: without them nothing was looked at.
+bool Pipeline::had_room() {
+  const DeskewedSweep& sweep = mapper_->sweep();
+  const std::uint64_t before = std::exchange(map_dropped_, mapper_->map().dropped());
+  const std::uint64_t lost_by_map = map_dropped_ - before;
+  return sweep.dropped <= sweep.points.size() && 2 * lost_by_map <= sweep.points.size();
 }
 
 void Pipeline::process_part(const Sweep& sweep) {
@@ -216,7 +224,7 @@ void Pipeline::detect_in_map(bool ends_turn) {
   } else {
     moving_tracker_.predict(list_.stamp_ns);
   }
-  moving_tracker_.add_to(list_.obstacles, tracker_);
+  moving_tracker_.add_to(list_.obstacles, mapper_->pose().translation, tracker_);
   list_.pose = mapper_->to_odom() * mapper_->pose();
   for (Obstacle& obstacle : list_.obstacles) move_into_parent(mapper_->to_odom(), obstacle);
   timer_.done(Stage::tracking);

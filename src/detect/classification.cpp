@@ -5,6 +5,7 @@
 #include <span>
 
 #include "scree/detect/obstacle_box.hpp"
+#include "scree/detect/push_nearest.hpp"
 
 namespace scree {
 namespace {
@@ -72,7 +73,7 @@ Prediction classify(const Cluster& cluster, const Network& network) {
   Prediction prediction = network(cluster.features);
   if (hangs(cluster) || is_tall(cluster)) {
     overrule(prediction.positive, prediction.negative);
-  } else if (cluster.is_crater) {
+  } else if (cluster.is_sure_hole) {
     overrule(prediction.negative, prediction.positive);
   }
   return prediction;
@@ -95,10 +96,18 @@ bool is_piece_of(const Obstacle& obstacle, const Obstacle& edge) {
          distance_to_box(edge, obstacle.center) <= kNear;
 }
 
+/// Measures how far off an obstacle is from the robot.
+auto from(const Eigen::Vector2f& robot) {
+  return [place = Eigen::Vector3d(robot.x(), robot.y(), 0)](const Obstacle& obstacle) {
+    return distance_to_box(obstacle, place);
+  };
+}
+
 }  // namespace
 
 void classify(const ClusteredPoints& found, const Network& network, double min_confidence,
-              EnclosingPolygons& polygons, FixedVector<Obstacle>& obstacles, StageCounts& counts) {
+              const Eigen::Vector2f& robot, EnclosingPolygons& polygons,
+              FixedVector<Obstacle>& obstacles, StageCounts& counts) {
   obstacles.clear();
   for (const Cluster& cluster : found.clusters.all()) {
     if (cluster.is_terrace) continue;
@@ -111,11 +120,11 @@ void classify(const ClusteredPoints& found, const Network& network, double min_c
     ++counts.obstacles;
     Obstacle obstacle = obstacle_of(cluster, prediction, height);
     obstacle.footprint = polygons.around(found.points.points, found.clusters.members(cluster));
-    if (!obstacles.push_back(obstacle)) ++counts.obstacles_dropped;
+    if (!push_nearest(obstacles, obstacle, from(robot))) ++counts.obstacles_dropped;
   }
 }
 
-void add_edges(const GroundEdges& edges, EnclosingPolygons& polygons,
+void add_edges(const GroundEdges& edges, const Eigen::Vector2f& robot, EnclosingPolygons& polygons,
                FixedVector<Obstacle>& obstacles, StageCounts& counts) {
   std::size_t before = obstacles.size();
   for (const GroundEdge& edge : edges.all()) {
@@ -133,7 +142,7 @@ void add_edges(const GroundEdges& edges, EnclosingPolygons& polygons,
     counts.obstacles -= gone;
     ++counts.obstacles;
     obstacle.footprint = polygons.around(edges.places(), edge.begin, edge.end);
-    if (!obstacles.push_back(obstacle)) ++counts.obstacles_dropped;
+    if (!push_nearest(obstacles, obstacle, from(robot))) ++counts.obstacles_dropped;
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "scree/detect/neighbours.hpp"
 #include "scree/detect/quantile.hpp"
@@ -90,9 +91,7 @@ void Depressions::collect(std::size_t start, const HeightRaster& raster) {
 }
 
 bool Depressions::is_crater(const HeightRaster& raster, const FixedVector<std::uint8_t>& ground) {
-  constexpr float kDepth = 0.25F;      // metres
-  constexpr float kSlope = 0.32F;      // metres per metre
-  constexpr double kGentle = 0.9;      // share of the area that may slope less
+  constexpr float kDepth = 0.2F;       // metres
   constexpr float kLeastKnown = 0.3F;  // share of the area
   float depth = 0, known = 0;
   slopes_.clear();
@@ -103,8 +102,26 @@ bool Depressions::is_crater(const HeightRaster& raster, const FixedVector<std::u
     slopes_.push_back(std::hypot(at[1] - at[-1], at[raster.columns] - *(at - raster.columns)) /
                       (2 * raster.cell_size));
   }
-  return depth >= kDepth && known > 0 && known >= kLeastKnown * static_cast<float>(cells_.size()) &&
-         quantile({slopes_.data(), slopes_.size()}, kGentle) >= kSlope;
+  const auto cells = static_cast<float>(cells_.size());
+  return depth >= kDepth && known > 0 && known >= kLeastKnown * cells &&
+         has_flanks(depth, cells * raster.cell_size * raster.cell_size);
+}
+
+/// Whether slopes are as steep as no hollow's. A hollow of the ground slopes alike everywhere; a
+/// crater has a floor, and flanks around it.
+/// @param depth metres
+/// @param area square metres
+bool Depressions::has_flanks(float depth, float area) {
+  constexpr double kFlanks = 0.9, kHalf = 0.5;  // shares of the area that slope less
+  constexpr float kDeep = 0.25F;                // metres
+  constexpr float kSteep = 0.32F;               // metres per metre
+  constexpr float kGentle = 0.21F;              // the same where there is a floor
+  constexpr float kFloor = 0.65F;               // its slope, as a share of the flanks'
+  constexpr float kWidest = 40;                 // square metres: what is wider is a valley
+  const std::span slopes(slopes_.data(), slopes_.size());
+  const float flanks = quantile(slopes, kFlanks);
+  if (flanks >= kSteep && depth >= kDeep) return true;
+  return flanks >= kGentle && area <= kWidest && quantile(slopes, kHalf) <= kFloor * flanks;
 }
 
 }  // namespace scree

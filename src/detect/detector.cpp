@@ -37,9 +37,10 @@ void Detector::detect(const SeenCloud& cloud, FixedVector<Obstacle>& obstacles, 
   take_in(cloud.points);
   timer.done(Stage::voxel_grid);
   const ClusteredPoints found = find_clusters(cloud, timer);
-  classify(found, network_, min_confidence_, polygons_, obstacles, counts_);
+  const Eigen::Vector2f robot = cloud.robot.value_or(Eigen::Vector2f::Zero());
+  classify(found, network_, min_confidence_, robot, polygons_, obstacles, counts_);
   if (const auto* surface = std::get_if<SurfaceMethod>(&method_)) {
-    add_edges(surface->edges(), polygons_, obstacles, counts_);
+    add_edges(surface->edges(), robot, polygons_, obstacles, counts_);
   }
   std::int64_t id = 0;
   for (Obstacle& obstacle : obstacles) obstacle.id = ++id;

@@ -1,7 +1,9 @@
 #include "scree/detect/ground_finder.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "scree/detect/neighbours.hpp"
@@ -39,10 +41,68 @@ void GroundFinder::find(const GroundRaster& raster, float* seen, Accuracy accura
     trend_.add_to(smooth_.data(), 1);
   } else {
     join_windows();
+    const Tilt tilt = main_tilt();
+    add_tilt(tilt, -1, seen_);  // from now on heights are above the tilted plane
     join_patches(accuracy);
     const bool has_craters = depressions_.remove({columns_, rows_, cell_, smooth_.data()}, ground_);
     if (has_craters) span(RasterFill::kSteps);
+    add_tilt(tilt, 1, seen_);
+    add_tilt(tilt, 1, smooth_.data());
   }
+}
+
+/// That of the largest patch where it is much of what was seen: a cloud need not be level, and
+/// ground that is not seen goes on as it does there. Else none.
+GroundFinder::Tilt GroundFinder::main_tilt() const {
+  constexpr float kMuch = 0.25F;  // of the cells that were seen
+  constexpr double kSteep = 0.3;  // metres per metre
+  const auto largest = std::ranges::max_element(patches_, {}, &Patch::cells);
+  if (largest == patches_.end()) return {};
+  const auto number = static_cast<std::uint32_t>(largest - patches_.begin());
+  float seen = 0;
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d products = Eigen::Vector3d::Zero();
+  for (std::size_t cell = 0; cell < patch_.size(); ++cell) {
+    if (std::isnan(seen_[cell])) continue;
+    ++seen;
+    if (patch_[cell] != number) continue;
+    const Eigen::Vector3d at(static_cast<double>(cell % columns_),
+                             static_cast<double>(cell / columns_), 1);
+    squares += at * at.transpose();
+    products += at * static_cast<double>(seen_[cell]);
+  }
+  if (static_cast<float>(largest->cells) < kMuch * seen) return {};
+  const Eigen::Vector3d plane = squares.ldlt().solve(products);
+  const double slope = plane.head<2>().norm() / static_cast<double>(cell_);
+  if (!(slope <= kSteep)) return {};
+  return {static_cast<float>(plane.x()), static_cast<float>(plane.y())};
+}
+
+void GroundFinder::add_tilt(const Tilt& tilt, float sign, float* heights) const {
+  if (tilt.along == 0 && tilt.across == 0) return;
+  for (std::size_t row = 0; row < rows_; ++row) {
+    for (std::size_t column = 0; column < columns_; ++column) {
+      heights[row * columns_ + column] +=
+          sign * (tilt.along * static_cast<float>(column) + tilt.across * static_cast<float>(row));
+    }
+  }
+}
+
+/// The largest; among trees, where all are small, the lowest of those that are nearly as large.
+/// @pre there is one
+GroundFinder::Patch& GroundFinder::first_patch() {
+  constexpr float kSmall = 3;  // square metres
+  Patch& largest = *std::ranges::max_element(patches_, {}, &Patch::cells);
+  if (has_trend() || static_cast<float>(largest.cells) * cell_ * cell_ >= kSmall) return largest;
+  for (Patch& patch : patches_) patch.residual = 0;
+  for (std::size_t cell = 0; cell < patch_.size(); ++cell) {
+    if (patch_[cell] != kNoLabel) patches_[patch_[cell]].residual += seen_[cell];
+  }
+  const auto height = [&](const Patch& patch) {
+    return 2 * patch.cells >= largest.cells ? patch.residual / static_cast<float>(patch.cells)
+                                            : std::numeric_limits<float>::infinity();
+  };
+  return *std::ranges::min_element(patches_, {}, height);
 }
 
 void GroundFinder::find_smooth_cells() {
@@ -162,9 +222,7 @@ void GroundFinder::join_patches(Accuracy accuracy) {
   const int rounds = accuracy == Accuracy::full ? 3 : 1;
   const std::size_t cells = columns_ * rows_;
   smooth_.resize(cells);
-  if (!patches_.empty()) {
-    std::ranges::max_element(patches_, {}, &Patch::cells)->is_ground = true;
-  }
+  if (!patches_.empty()) first_patch().is_ground = true;
   mark_ground();
   for (int round = 0; round < rounds; ++round) {
     span(RasterFill::kRoughSteps);

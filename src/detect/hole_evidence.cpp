@@ -162,16 +162,16 @@ void HoleEvidence::mark_lost(const Eigen::Vector3f& from, const Eigen::Vector3f&
 Evidence HoleEvidence::of(std::span<const std::uint32_t> members, const CandidatePoints& points,
                           const GroundSurface& surface) {
   constexpr float kMostThrough = 0.3F, kInside = 0.3F;
-  constexpr float kRim = 0.5F, kRimAlone = 0.8F;  // the latter where nothing is known of beams
+  constexpr float kRim = 0.5F, kRimAlone = 0.7F;  // the latter where nothing is known of beams
   collect_cells(members, points, surface);
   float into = 0, through = 0;
   for (std::size_t i = 0; i < seen_cells_; ++i) {
     into += into_[cells_[i]];
     through += through_ground_[cells_[i]];
   }
-  const float rim = rim_share(surface);
+  rim_ = rim_share(surface);
   if (knows_beams_ && through > kMostThrough * (into + through)) return Evidence::none;
-  if (rim < (knows_beams_ ? kRim : kRimAlone)) return Evidence::none;
+  if (rim_ < (knows_beams_ ? kRim : kRimAlone)) return Evidence::none;
   return static_cast<float>(seen_cells_) >= kInside * static_cast<float>(cells_.size())
              ? Evidence::inside
              : Evidence::wall;
@@ -196,15 +196,38 @@ void HoleEvidence::collect_cells(std::span<const std::uint32_t> members,
       if (is_void(near)) take(near);
     }
   }
+  if (!knows_beams_) close_gaps(surface);
+}
+
+/// Takes cells in which nothing was seen where half of those around them are taken: a floor with
+/// gaps between its points has no rim there.
+void HoleEvidence::close_gaps(const GroundSurface& surface) {
+  const auto is_enclosed = [&](std::size_t cell) {
+    const auto around = neighbours(cell, surface.columns());
+    const auto taken =
+        std::ranges::count_if(around, [&](std::size_t near) { return taken_by_[near] == number_; });
+    return 2 * taken >= std::ssize(around);
+  };
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    for (const std::size_t near : neighbours(cells_[i], surface.columns())) {
+      const bool is_gap = taken_by_[near] != number_ && std::isnan(surface.seen(near));
+      if (!is_gap || !surface.has_neighbours(near) || !is_enclosed(near)) continue;
+      taken_by_[near] = number_;
+      cells_.push_back(static_cast<std::uint32_t>(near));
+    }
+  }
 }
 
 /// The share of the cells at the rim with ground near them.
 float HoleEvidence::rim_share(const GroundSurface& surface) {
   float rim = 0, ground = 0;
+  const auto is_in_hole = [&](std::size_t cell) {
+    if (taken_by_[cell] == number_) return true;
+    // Another piece of the same hole's floor.
+    return !knows_beams_ && surface.level(cell) - surface.seen(cell) > kBelow;
+  };
   for (const std::uint32_t cell : cells_) {
-    const auto around = neighbours(cell, surface.columns());
-    const bool is_inner =
-        std::ranges::all_of(around, [&](std::size_t near) { return taken_by_[near] == number_; });
+    const bool is_inner = std::ranges::all_of(neighbours(cell, surface.columns()), is_in_hole);
     if (is_inner) continue;
     ++rim;
     if (has_ground_near(cell, surface)) ++ground;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "scree/detect/obstacle_box.hpp"
+#include "scree/detect/push_nearest.hpp"
 
 namespace scree {
 namespace {
@@ -113,7 +114,8 @@ void MovingTracker::add_found(const Obstacle& found, std::int64_t stamp_ns, Trac
   track.is_matched = true;
 }
 
-void MovingTracker::add_to(FixedVector<Obstacle>& list, Tracker& standing) {
+void MovingTracker::add_to(FixedVector<Obstacle>& list, const Eigen::Vector3d& robot,
+                           Tracker& standing) {
   constexpr double kSame = 0.2;  // metres
   hand_over(list, standing);
   for (const Track& track : tracks_) {
@@ -122,7 +124,8 @@ void MovingTracker::add_to(FixedVector<Obstacle>& list, Tracker& standing) {
       return other.velocity.isZero() && distance_to_box(track.obstacle, other.center) < kSame;
     });
     list.resize(static_cast<std::size_t>(last - list.begin()));
-    if (!list.push_back(published(track))) ++dropped_;
+    const auto distance = [&](const Obstacle& each) { return distance_to_box(each, robot); };
+    if (!push_nearest(list, published(track), distance)) ++dropped_;
   }
 }
 

@@ -177,9 +177,9 @@ void SurfaceMethod::measure_clusters(const PointCloud& points) {
     const bool is_below = cluster.features[max_height] < 0;
     if (is_below && cluster.features[through_share] < kMostBelowGround) {
       // The ground all around a crater is known, or it would not be one.
-      cluster.is_crater = is_crater(cluster);
-      cluster.evidence =
-          cluster.is_crater ? Evidence::inside : evidence_.of(members, kept_, surface_);
+      const bool is_of_ground = is_crater(cluster);
+      cluster.evidence = is_of_ground ? Evidence::inside : evidence_.of(members, kept_, surface_);
+      cluster.is_sure_hole = is_of_ground || is_open_pit(cluster);
     }
   }
 }
@@ -202,6 +202,17 @@ bool SurfaceMethod::is_terrace(const Cluster& cluster) const {
   if (features[min_height] < 0 || features[max_height] > kHeight) return false;
   return share_of(cluster, [&](std::size_t cell) { return surface_.patch_area(cell) >= kArea; }) >=
          kMostly;
+}
+
+/// Whether a cluster is a pit into which one sees, with ground all around: a cloud may come from
+/// any place, and the network has not seen pits of all kinds from there. @pre evidence_ was asked
+bool SurfaceMethod::is_open_pit(const Cluster& cluster) const {
+  constexpr float kDeep = -0.3F;         // metres
+  constexpr float kRim = 0.7F;           // with ground near it
+  constexpr std::uint32_t kFewest = 60;  // points
+  if (settings_.ground_trend > 0 || cluster.evidence != Evidence::inside) return false;
+  return cluster.features[min_height] <= kDeep && evidence_.rim() >= kRim &&
+         cluster.end - cluster.begin >= kFewest;
 }
 
 /// Whether a cluster is the whole of a crater, or its deepest part.

@@ -7,6 +7,7 @@
 
 #include "scree/detect/obstacle_box.hpp"
 #include "scree/detect/overlaps.hpp"
+#include "scree/detect/push_nearest.hpp"
 
 namespace scree {
 namespace {
@@ -44,7 +45,7 @@ void Tracker::update(std::int64_t stamp_ns, const Eigen::Vector3d& robot,
   update_matched(stamp_ns, found);
   update_unmatched(occupancy_at);
   remove_lost(stamp_ns);
-  start_tracks(stamp_ns, found);
+  start_tracks(stamp_ns, robot, found);
   classify();
   choose_published();
   list_near(robot, obstacles);
@@ -101,14 +102,16 @@ void Tracker::remove_lost(std::int64_t stamp_ns) {
   tracks_.resize(kept);
 }
 
-void Tracker::start_tracks(std::int64_t stamp_ns, std::span<const Obstacle> found) {
+void Tracker::start_tracks(std::int64_t stamp_ns, const Eigen::Vector3d& robot,
+                           std::span<const Obstacle> found) {
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (track_of_[i] >= 0) continue;
     Track track;
     add_found(stamp_ns, found[i], track);
     track.is_matched = true;
     track.obstacle.id = 0;
-    if (!tracks_.push_back(track)) ++dropped_;
+    const auto distance = [&](const Track& each) { return distance_to_box(each.obstacle, robot); };
+    if (!push_nearest(tracks_, track, distance)) ++dropped_;
   }
 }
 
@@ -150,7 +153,8 @@ void Tracker::list_near(const Eigen::Vector3d& robot, FixedVector<Obstacle>& obs
     const double reach = settings_.reach + (was_shown ? kStays : 0);
     if (distance_to_box(obstacle, robot) > reach) continue;
     shown_.push_back(obstacle.id);
-    if (!obstacles.push_back(obstacle)) ++dropped_;
+    const auto distance = [&](const Obstacle& each) { return distance_to_box(each, robot); };
+    if (!push_nearest(obstacles, obstacle, distance)) ++dropped_;
   }
 }
 

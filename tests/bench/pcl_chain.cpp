@@ -52,7 +52,8 @@ void PclChain::detect(const pcl::PointCloud<pcl::PointXYZI>::Ptr& cloud,
   cluster();
   measure_clusters();
   StageCounts counts;
-  classify({kept_, clusters_}, network_, settings_.min_confidence, polygons_, obstacles, counts);
+  classify({kept_, clusters_}, network_, settings_.min_confidence, Eigen::Vector2f::Zero(),
+           polygons_, obstacles, counts);
 }
 
 void PclChain::thin(const pcl::PointCloud<pcl::PointXYZI>::Ptr& cloud) {

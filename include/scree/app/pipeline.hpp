@@ -86,6 +86,7 @@ public:
 private:
   void process_turn(const Sweep& sweep);
   void process_part(const Sweep& sweep);
+  bool had_room();
   float turns_since_list(const Sweep& sweep);
   void follow_motion(const Sweep& sweep);
   const SyncBuffer* choose_motion() const;
@@ -115,8 +116,9 @@ private:
   const ObstacleGrid* grid_ = nullptr;
   StageTimer timer_;
   bool has_looked_ = false;
-  float turns_ = 1;           // since the list before
-  std::int64_t turn_ns_ = 0;  // what the last turn took
+  std::uint64_t map_dropped_ = 0;  // points, until the turn before
+  float turns_ = 1;                // since the list before
+  std::int64_t turn_ns_ = 0;       // what the last turn took
   bool is_within_turn_ = false;
   std::int64_t lidar_restart_ns_ = 0;  // of which it is not known yet what it means; 0: of none
 };

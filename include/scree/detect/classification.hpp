@@ -11,13 +11,16 @@ namespace scree {
 
 /// Writes an obstacle for each cluster that the network takes for one with at least so much
 /// confidence. A rock below the ground and a hole above it are the network's errors, and left out.
+/// Where there is no room for all, the nearest stay.
+/// @param robot its place in the cloud
 /// @param polygons make the footprints
 void classify(const ClusteredPoints& found, const Network& network, double min_confidence,
-              EnclosingPolygons& polygons, FixedVector<Obstacle>& obstacles, StageCounts& counts);
+              const Eigen::Vector2f& robot, EnclosingPolygons& polygons,
+              FixedVector<Obstacle>& obstacles, StageCounts& counts);
 
 /// Adds the edges that no obstacle covers. Obstacles that are pieces of an edge go: it stands for
-/// them.
-void add_edges(const GroundEdges& edges, EnclosingPolygons& polygons,
+/// them. The nearest stay, as above.
+void add_edges(const GroundEdges& edges, const Eigen::Vector2f& robot, EnclosingPolygons& polygons,
                FixedVector<Obstacle>& obstacles, StageCounts& counts);
 
 }  // namespace scree

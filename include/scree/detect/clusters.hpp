@@ -22,7 +22,7 @@ struct Cluster {
   Features features{};
   Evidence evidence = Evidence::none;  ///< that it is a hole
   bool is_terrace = false;             ///< ground on a higher level
-  bool is_crater = false;              ///< a closed depression of the ground
+  bool is_sure_hole = false;           ///< whatever the network says
 };
 
 /// The clusters of one cloud with their points.

@@ -14,10 +14,11 @@ struct HeightRaster {
   const float* heights;  ///< metres, all known
 };
 
-/// Finds craters whose flanks are nowhere too steep to be ground: closed depressions, deeper than
-/// 0.25 m below the lowest place of their rim, where a tenth of the area slopes by 18 degrees or
-/// more. Hollows of the ground are gentler. Water is let in from the raster's edge, lowest places
-/// first (priority flood; Barnes, Lehman and Mulla 2014), and what it must rise to is the rim.
+/// Finds craters whose flanks are nowhere too steep to be ground: closed depressions where a tenth
+/// of the area slopes by 18 degrees or more, and that are 0.25 m deep or more below the lowest
+/// place of their rim; or 12 degrees around a floor, and 0.2 m. Hollows of the ground are gentler,
+/// and slope everywhere. Water is let in from the raster's edge, lowest places first (priority
+/// flood; Barnes, Lehman and Mulla 2014), and what it must rise to is the rim.
 class Depressions {
 public:
   explicit Depressions(std::size_t max_cells);
@@ -40,6 +41,7 @@ private:
   void flood(const HeightRaster& raster);
   void reach(std::size_t cell, float level, const HeightRaster& raster);
   void collect(std::size_t start, const HeightRaster& raster);
+  bool has_flanks(float depth, float area);
   bool is_crater(const HeightRaster& raster, const FixedVector<std::uint8_t>& ground);
 
   FixedVector<float> level_;           // of the water in each cell

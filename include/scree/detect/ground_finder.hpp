@@ -56,6 +56,12 @@ public:
   }
 
 private:
+  struct Patch {
+    std::uint32_t cells = 0;
+    float residual = 0;
+    bool is_ground = false;
+  };
+  Patch& first_patch();
   bool has_trend() const { return settings_.trend_reach > 0; }
   void find_smooth_cells();
   void add_planar_cells();
@@ -63,6 +69,12 @@ private:
   void join_windows();
   template <class Visit>
   void for_each_planar_cell(const Visit& visit) const;
+  /// A tilt of the ground, metres a cell along rows and columns.
+  struct Tilt {
+    float along = 0, across = 0;
+  };
+  Tilt main_tilt() const;
+  void add_tilt(const Tilt& tilt, float sign, float* heights) const;
   void join_trend();
   void join_patches(Accuracy accuracy);
   void mark_ground();
@@ -79,11 +91,6 @@ private:
   FixedVector<std::uint8_t> ground_;
   FixedVector<std::uint32_t> patch_;  // number of each cell's patch
   FixedVector<std::uint32_t> queue_;
-  struct Patch {
-    std::uint32_t cells = 0;
-    float residual = 0;
-    bool is_ground = false;
-  };
   FixedVector<Patch> patches_;
   RasterFill fill_;
   GroundTrend trend_;

@@ -32,6 +32,8 @@ public:
   /// @param members of the cluster among the points
   Evidence of(std::span<const std::uint32_t> members, const CandidatePoints& points,
               const GroundSurface& surface);
+  /// The share of that cluster's rim with ground near it.
+  float rim() const { return rim_; }
 
 private:
   static constexpr std::size_t kTile = 16;  // cells on a side
@@ -46,10 +48,12 @@ private:
                  const GroundSurface& surface);
   void collect_cells(std::span<const std::uint32_t> members, const CandidatePoints& points,
                      const GroundSurface& surface);
+  void close_gaps(const GroundSurface& surface);
   float rim_share(const GroundSurface& surface);
   bool has_ground_near(std::size_t cell, const GroundSurface& surface);
 
   bool knows_beams_ = false;
+  float rim_ = 0;
   Eigen::Vector2f robot_ = Eigen::Vector2f::Zero();
   float reach_ = 0;                           // metres around the robot, see SeenCloud
   FixedVector<float> into_, through_ground_;  // beams that ended below the ground, by cell

@@ -44,7 +44,7 @@ public:
   /// that was followed has come to stand, and the list has it, it keeps its id there.
   /// @param list of what stands, in the map's frame
   /// @param standing that made the list
-  void add_to(FixedVector<Obstacle>& list, Tracker& standing);
+  void add_to(FixedVector<Obstacle>& list, const Eigen::Vector3d& robot, Tracker& standing);
   /// Whether something that moves came through the place of an obstacle of the map, and has left
   /// it.
   bool was_left(const Obstacle& standing) const;

@@ -56,6 +56,7 @@ private:
   template <class Condition>
   float share_of(const Cluster& cluster, const Condition& condition) const;
   bool is_terrace(const Cluster& cluster) const;
+  bool is_open_pit(const Cluster& cluster) const;
   bool is_crater(const Cluster& cluster) const;
 
   SurfaceSettings settings_;

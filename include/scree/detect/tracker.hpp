@@ -91,7 +91,8 @@ private:
   void update_matched(std::int64_t stamp_ns, std::span<const Obstacle> found);
   void update_unmatched(const std::function<Occupancy(const Eigen::Vector3d&)>& occupancy_at);
   void remove_lost(std::int64_t stamp_ns);
-  void start_tracks(std::int64_t stamp_ns, std::span<const Obstacle> found);
+  void start_tracks(std::int64_t stamp_ns, const Eigen::Vector3d& robot,
+                    std::span<const Obstacle> found);
   void classify();
   void choose_published();
   void list_near(const Eigen::Vector3d& robot, FixedVector<Obstacle>& obstacles);

@@ -268,6 +268,12 @@ TEST_F(PipelineMapTooSmall, CountsThePointsThatItsMemoryDoesNotHold) {
   EXPECT_EQ(pipeline_.counts().dropped, sweep_.points.size() - 1000);
 }
 
+TEST_F(PipelineMapTooSmall, HasNotLookedWhereMostPointsFoundNoRoom) {
+  go(3);
+  EXPECT_GT(sweep_.points.size(), 2000U);
+  EXPECT_FALSE(pipeline_.has_looked());
+}
+
 // A second robot of the same kind sees the very same, to the last bit.
 TEST(PipelineMapAgain, GivesTheSameListsOnEveryRun) {
   Settings settings = small_settings();

@@ -33,13 +33,15 @@ protected:
 };
 
 TEST_F(PipelineProcessorTest, SumsUpWhatWasDroppedSweepBySweep) {
-  settings_.memory.sweep_points = 2;
+  settings_.memory.sweep_points = 3;
   Pipeline small(settings_, Networks());
   PipelineProcessor processor(small, settings_.track);
   EXPECT_NE(processor(row_of_points(5), report_), nullptr);
-  EXPECT_EQ(report_.drops.points, 3U);
+  EXPECT_EQ(report_.drops.points, 2U);
   processor(row_of_points(6), report_);
-  EXPECT_EQ(report_.drops.points, 7U);
+  EXPECT_EQ(report_.drops.points, 5U);
+  EXPECT_EQ(processor(row_of_points(7), report_), nullptr) << "most has found no room";
+  EXPECT_EQ(report_.drops.points, 9U);
 }
 
 TEST_F(PipelineProcessorTest, GivesNoListOfASweepThatIsNotAWholeTurn) {

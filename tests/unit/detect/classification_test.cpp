@@ -44,7 +44,8 @@ protected:
 
   const FixedVector<Obstacle>& obstacles(const Network& network) {
     StageCounts counts;
-    classify({points_, clusters_}, network, 0.5, polygons_, obstacles_, counts);
+    classify({points_, clusters_}, network, 0.5, Eigen::Vector2f::Zero(), polygons_, obstacles_,
+             counts);
     return obstacles_;
   }
 

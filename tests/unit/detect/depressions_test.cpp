@@ -69,11 +69,26 @@ TEST_F(DepressionsTest, ARimThrownUpAroundItDoesNotHideIt) {
 }
 
 TEST_F(DepressionsTest, ShallowGentleAndOpenOnesStay) {
-  EXPECT_TRUE(taken_from([](float x, float y) { return bowl(x, y, 0.2F, 1); }).empty());
+  EXPECT_TRUE(taken_from([](float x, float y) { return bowl(x, y, 0.18F, 0.9F); }).empty());
   EXPECT_TRUE(taken_from([](float x, float y) { return bowl(x, y, 0.4F, 3.5F); }).empty());
   EXPECT_TRUE(taken_from([](float x, float) { return 0.3F * x; }).empty()) << "a slope";
   EXPECT_TRUE(taken_from([](float, float y) { return std::abs(y) < 1 ? -0.5F : 0.0F; }).empty())
       << "a valley that leads out";
+}
+
+/// A round floor, with flanks of one slope around it up to the level.
+float pan(float x, float y, float floor_radius, float slope, float width) {
+  const float up = std::clamp(std::hypot(x, y) - floor_radius, 0.0F, width);
+  return slope * (up - width);
+}
+
+TEST_F(DepressionsTest, GentleFlanksAroundAFloorMakeACraterUnlessItIsAValley) {
+  EXPECT_FALSE(taken_from([](float x, float y) { return pan(x, y, 2, 0.27F, 0.8F); }).empty());
+  EXPECT_TRUE(taken_from([](float x, float y) { return pan(x, y, 2, 0.17F, 1.3F); }).empty());
+  EXPECT_TRUE(taken_from([](float x, float y) { return pan(x, y, 3.0F, 0.27F, 0.8F); }).empty())
+      << "wider than a crater";
+  EXPECT_TRUE(taken_from([](float x, float y) { return bowl(x, y, 0.4F, 3); }).empty())
+      << "as steep, and without a floor";
 }
 
 TEST_F(DepressionsTest, WhatIsMostlyNotKnownStays) {

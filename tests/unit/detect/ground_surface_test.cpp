@@ -193,6 +193,33 @@ TEST_P(GroundSurfaceTest, HeightsAboveItAreThoseOfTheSinglePlaces) {
   EXPECT_EQ(next, points.size());
 }
 
+TEST(GroundSurface, BeyondADitchTiltedGroundGoesOn) {
+  PointCloud cloud = seen(
+      [](float x, float y) { return 0.06F * y + (std::abs(y) < 1.2F ? -0.7F : 0.0F) + 0.0F * x; });
+  GroundSurface surface(test::kGroundSettings, kMaxPoints, kMaxCells);
+  surface.build(cloud);
+  for (const float y : {-3.0F, -1.8F, 1.8F, 3.0F}) {
+    EXPECT_TRUE(is_ground(surface, 1, y)) << y;
+    EXPECT_NEAR(surface.height(1, y), 0.06F * y, 0.02) << y;
+  }
+  EXPECT_FALSE(is_ground(surface, 1, 0)) << "the ditch";
+}
+
+TEST(GroundSurface, OfSmallPatchesTheLowestIsGround) {
+  // Leaves that lie level above a clearing that is hardly smaller.
+  PointCloud cloud = seen([](float x, float y) {
+    const bool is_leaf = x > 0 && x < 1.5F && std::abs(y) < 0.6F;
+    const bool is_clearing = x > -1.6F && x < -0.2F && std::abs(y) < 0.6F;
+    const auto bush = static_cast<float>(
+        (static_cast<int>((x + 4) * 9) * 7 + static_cast<int>((y + 4) * 9) * 5) % 8);
+    return is_leaf ? 1.0F : is_clearing ? 0.0F : 0.3F + 0.2F * bush;
+  });
+  GroundSurface surface(test::kGroundSettings, kMaxPoints, kMaxCells);
+  surface.build(cloud);
+  EXPECT_TRUE(is_ground(surface, -0.9F, 0));
+  EXPECT_FALSE(is_ground(surface, 0.8F, 0));
+}
+
 TEST(GroundSurface, TheTrendGoesOnWithASlopeFromRingToRing) {
   std::mt19937 random(3);
   std::normal_distribution<float> wide(0, 0.06F), noise(0, 0.005F);

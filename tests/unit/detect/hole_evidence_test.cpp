@@ -61,6 +61,16 @@ TEST(HoleEvidence, OfAPitWhoseFloorIsSeenIsItsInside) {
   EXPECT_EQ(world.of(false), Evidence::inside);
 }
 
+TEST(HoleEvidence, OfAPitWhoseFloorHasGapsIsItsInside) {
+  World world([](float x, float y) {
+    if (!test::in_square(x, y, 0.8F)) return 0.0F;
+    const auto tile = [](float place) { return static_cast<int>((place + 4) / 0.15F); };
+    const bool is_gap = (tile(x) + tile(y)) % 2 == 0;
+    return is_gap ? std::nanf("") : -0.3F;
+  });
+  EXPECT_EQ(world.of(false), Evidence::inside);
+}
+
 TEST(HoleEvidence, OfAPitWhoseFarWallAloneIsSeenIsTheWall) {
   World world([](float x, float y) {
     if (!test::in_square(x, y, 0.8F)) return 0.0F;

@@ -23,7 +23,7 @@ protected:
         now_ns_, found, [this](const Eigen::Vector3d&) { return is_seen_through_; }, next_id_);
     list_.clear();
     for (const Obstacle& each : standing) list_.push_back(each);
-    tracker_.add_to(list_, standing_);
+    tracker_.add_to(list_, Eigen::Vector3d::Zero(), standing_);
     return {list_.begin(), list_.end()};
   }
 

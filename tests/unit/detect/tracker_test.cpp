@@ -249,6 +249,17 @@ TEST_F(TrackerTest, DropsAndCountsWhatFindsNoRoom) {
   EXPECT_GT(tracker_.dropped(), before);
 }
 
+TEST_F(TrackerTest, WhatIsNearestFindsRoom) {
+  std::vector<Obstacle> far, near;
+  for (std::size_t i = 0; i < kMost; ++i) far.push_back(at(30 + 1.5 * static_cast<double>(i), 0));
+  for (std::size_t i = 0; i < kMost; ++i) near.push_back(at(1.5 * static_cast<double>(i), 0));
+  update(far, 3);
+  ASSERT_EQ(list_.size(), kMost);
+  update(near, 3);
+  ASSERT_EQ(list_.size(), kMost);
+  for (const Obstacle& obstacle : list_) EXPECT_LT(obstacle.center.x(), 30);
+}
+
 TEST_F(TrackerTest, AnObstacleTooFarOffIsFollowedAndPublishedAtOnceWhenTheRobotIsNearEnough) {
   const double reach = settings_.reach;
   EXPECT_EQ(update({at(reach + 0.5, 0), at(0, -reach - 0.5)}, 10).size(), 0U);

@@ -109,7 +109,8 @@ struct Outcome {
     ObstacleList list(static_cast<std::size_t>(MemorySettings().obstacles));
     EnclosingPolygons polygons(found.points.size());
     StageCounts unused;
-    classify(found, network, min_confidence, polygons, list.obstacles, unused);
+    classify(found, network, min_confidence, Eigen::Vector2f::Zero(), polygons, list.obstacles,
+             unused);
     milliseconds.push_back(1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
     scorer.add(world.truth, {&list, 1});
     pairs.add(world, compare(world.truth, world.truth.visible[0], list));
