@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -13,6 +14,7 @@
 
 #include "dbc_text.hpp"
 #include "scree/config/near_names.hpp"
+#include "scree/core/lower_case.hpp"
 #include "scree/core/read_file.hpp"
 
 namespace scree::encoder {
@@ -24,23 +26,68 @@ struct Unit {
   EncoderKind kind;
   double scale;
 };
-/// As people write them: km/h, KPH, "km / h".
+/// As people write them: km/h, KPH, "km / h", [km/hour].
 std::string normal_unit(std::string_view unit) {
+  struct Word {
+    std::string_view written, brief;
+  };
+  constexpr std::array kWords = {
+      Word{"hour", "h"},   Word{"hr", "h"},    Word{"std", "h"},         Word{"second", "s"},
+      Word{"sec", "s"},    Word{"per", "/"},   Word{"kilometers", "km"}, Word{"kilometer", "km"},
+      Word{"meters", "m"}, Word{"meter", "m"}, Word{"miles", "mi"},      Word{"mile", "mi"}};
   std::string normal;
-  for (const char c : unit) {
-    if (c != ' ') normal += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  for (const char c : lower_case(unit)) {
+    if (c != ' ' && c != '[' && c != ']') normal += c;
+  }
+  for (const Word& word : kWords) {
+    const auto at = normal.find(word.written);
+    if (at != std::string::npos) normal.replace(at, word.written.size(), word.brief);
   }
   return normal;
 }
 
+constexpr double kKmh = 1 / 3.6, kMph = 0.44704, kKnot = 1852.0 / 3600, kFoot = 0.3048;
 constexpr std::array kUnits = {
-    Unit{"m/s", EncoderKind::speed, 1},        Unit{"mps", EncoderKind::speed, 1},
-    Unit{"cm/s", EncoderKind::speed, 0.01},    Unit{"mm/s", EncoderKind::speed, 0.001},
-    Unit{"km/h", EncoderKind::speed, 1 / 3.6}, Unit{"kph", EncoderKind::speed, 1 / 3.6},
-    Unit{"kmh", EncoderKind::speed, 1 / 3.6},  Unit{"mph", EncoderKind::speed, 0.44704},
-    Unit{"m", EncoderKind::counter, 1},        Unit{"cm", EncoderKind::counter, 0.01},
-    Unit{"mm", EncoderKind::counter, 0.001},   Unit{"km", EncoderKind::counter, 1000},
+    Unit{"m/s", EncoderKind::speed, 1},      Unit{"mps", EncoderKind::speed, 1},
+    Unit{"dm/s", EncoderKind::speed, 0.1},   Unit{"cm/s", EncoderKind::speed, 0.01},
+    Unit{"mm/s", EncoderKind::speed, 0.001}, Unit{"m/min", EncoderKind::speed, 1.0 / 60},
+    Unit{"km/h", EncoderKind::speed, kKmh},  Unit{"kph", EncoderKind::speed, kKmh},
+    Unit{"kmh", EncoderKind::speed, kKmh},   Unit{"kmph", EncoderKind::speed, kKmh},
+    Unit{"mph", EncoderKind::speed, kMph},   Unit{"mi/h", EncoderKind::speed, kMph},
+    Unit{"kn", EncoderKind::speed, kKnot},   Unit{"kt", EncoderKind::speed, kKnot},
+    Unit{"knot", EncoderKind::speed, kKnot}, Unit{"knots", EncoderKind::speed, kKnot},
+    Unit{"ft/s", EncoderKind::speed, kFoot}, Unit{"in/s", EncoderKind::speed, kFoot / 12},
+    Unit{"m", EncoderKind::counter, 1},      Unit{"cm", EncoderKind::counter, 0.01},
+    Unit{"mm", EncoderKind::counter, 0.001}, Unit{"km", EncoderKind::counter, 1000},
 };
+
+/// What a unit of the rate at which a wheel, or its motor, turns is in turns a second.
+struct TurnUnit {
+  std::string_view name;
+  double rate;
+};
+constexpr std::array kTurnUnits = {
+    TurnUnit{"rpm", 1.0 / 60},   TurnUnit{"1/min", 1.0 / 60},
+    TurnUnit{"u/min", 1.0 / 60}, TurnUnit{"rev/min", 1.0 / 60},
+    TurnUnit{"rps", 1},          TurnUnit{"hz", 1},
+    TurnUnit{"rev/s", 1},        TurnUnit{"rad/s", 1 / (2 * std::numbers::pi)},
+    TurnUnit{"deg/s", 1.0 / 360}};
+
+/// Why a rate of turn cannot be meant; empty when it can.
+std::string contradiction(const EncoderSettings& settings, const TurnUnit& unit,
+                          std::string_view written) {
+  constexpr double kLargestWheel = 8;  // metres around
+  if (settings.kind != EncoderKind::speed) {
+    return fmt::format("encoder.kind is {}, but the unit of {} is {}", name_of(settings.kind),
+                       settings.signal, written);
+  }
+  const double around = std::abs(settings.scale) / unit.rate;
+  if (around <= kLargestWheel) return {};
+  return fmt::format(
+      "encoder.scale = {} cannot be for {}, whose unit is {}: the wheel would have "
+      "{:.3g} m around; scale is what it rolls in a turn, times {:.4g}",
+      settings.scale, settings.signal, written, around, unit.rate);
+}
 
 /// Why settings and unit contradict each other; empty when they do not, as far as can be known.
 std::string contradiction(const EncoderSettings& settings, const DbcSignal& signal) {
@@ -52,14 +99,17 @@ std::string contradiction(const EncoderSettings& settings, const DbcSignal& sign
   }
   const std::string_view unit = signal.unit;
   const std::string normal = normal_unit(unit);
+  const auto* const turn = std::ranges::find(kTurnUnits, normal, &TurnUnit::name);
+  if (turn != kTurnUnits.end()) return contradiction(settings, *turn, unit);
   for (const Unit& known : kUnits) {
     if (normal != known.name) continue;
     if (settings.kind != known.kind) {
       return fmt::format("encoder.kind is {}, but the unit of {} is {}", name_of(settings.kind),
                          settings.signal, unit);
     }
-    const double ratio = std::abs(settings.scale) / known.scale;
-    if (ratio > 2 || ratio < 0.5) {
+    const double scale = std::abs(settings.scale), ratio = scale / known.scale;
+    const bool is_forgotten = scale == 1 && known.scale != 1;
+    if (is_forgotten || ratio > 2 || ratio < 0.5) {
       return fmt::format("encoder.scale = {} cannot be for {}, whose unit is {}: 1 {} is {:.6g} {}",
                          settings.scale, settings.signal, unit, unit, known.scale,
                          known.kind == EncoderKind::speed ? "m/s" : "m");
@@ -110,12 +160,13 @@ public:
       // After a message line that cannot be read, nobody knows whose signal it is.
       const bool is_of_it = at_.name == message_ || long_names_.of_message(at_) == message_;
       if (at_.fault.empty() && is_of_it) take(*std::move(part), number);
-    } else if (const auto real = parse_float_line(line); real && found_) {
-      make_float(*real);
+    } else if (found_) {
+      take_of_found(line);
     }
   }
 
-  Result<DbcSignal> result(const std::string& origin, const DbcText& text) const {
+  Result<DbcSignal> result(const std::string& origin, const DbcText& text) {
+    if (found_ && found_->because) set_selector(*found_->because);
     if (found_ && found_->fault.empty()) return found_->signal;
     if (found_) {
       return fail(fmt::format("{}:{}: {}.{} {}", origin, line_, message_, signal_, found_->fault));
@@ -140,15 +191,37 @@ private:
   void take(SignalLine part, int number) {
     const std::string_view name = long_names_.of_signal(at_, part.name);
     signals_.push_back(name);
+    if (part.is_selector) selectors_.push_back(part);
     if ((part.name != signal_ && name != signal_) || found_) return;
     part.signal.id = at_.id;
     part.signal.is_extended = at_.is_extended;
     found_ = std::move(part);
     line_ = number;
   }
+  bool is_found(const MessageLine& signal) const {
+    return signal.name == found_->name && signal.id == found_->signal.id;
+  }
+  /// Takes what stands behind all messages.
+  void take_of_found(std::string_view line) {
+    if (const auto real = parse_float_line(line); real && is_found(real->signal)) {
+      make_float(*real);
+    } else if (const auto values = parse_values_line(line); values && is_found(values->signal)) {
+      found_->signal.unavailable = values->unavailable;
+    } else if (const auto choice = parse_selection_line(line);
+               choice && is_found(choice->signal) && !choice->is_one_value) {
+      found_->fault = "is multiplexed by ranges of values (SG_MUL_VAL_)";
+    }
+  }
+  /// Only a selector that is in every frame is understood.
+  void set_selector(std::int64_t value) {
+    if (selectors_.size() != 1 || selectors_[0].because || !selectors_[0].fault.empty()) {
+      found_->fault = "is multiplexed by more than one selector that is in every frame";
+      return;
+    }
+    found_->signal.selector = {selectors_[0].signal, value};
+  }
   void make_float(const FloatLine& line) {
     DbcSignal& signal = found_->signal;
-    if (line.signal.name != found_->name || line.signal.id != signal.id) return;
     signal.is_float = true;
     if (signal.length != (line.type == 1 ? 32 : 64) || line.type > 2) {
       found_->fault = fmt::format("has {} bits, and is to be a floating-point number of type {}",
@@ -165,7 +238,8 @@ private:
   std::string fault_;  // of the first line that cannot be read
   MessageLine at_;
   std::optional<SignalLine> found_;
-  int line_ = 0;  // of what was found
+  std::vector<SignalLine> selectors_;  // of the message
+  int line_ = 0;                       // of what was found
 };
 
 }  // namespace
@@ -203,13 +277,17 @@ Result<EncoderSettings> with_dbc(const EncoderSettings& settings,
   EncoderSettings filled = settings;
   filled.can_id = signal->id;
   filled.is_extended = signal->is_extended;
-  filled.start_bit = signal->start_bit;
-  filled.length = signal->length;
-  filled.byte_order = signal->byte_order;
+  static_cast<SignalPlace&>(filled) = *signal;
   filled.is_signed = signal->is_signed;
   filled.factor = signal->factor;
   filled.offset = signal->offset;
   filled.is_float = signal->is_float;
+  if (signal->low < signal->high) {
+    filled.lowest = signal->low;
+    filled.highest = signal->high;
+  }
+  filled.unavailable = signal->unavailable;
+  filled.selector = signal->selector;
   // What J1939's files give where they do not know the source (SAE J1939-21: the null address).
   constexpr std::int64_t kSource = 0xFF, kNullAddress = 0xFE;
   filled.any_source = signal->is_extended && (filled.can_id & kSource) == kNullAddress;

@@ -1,12 +1,14 @@
 #include "dbc_text.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <utility>
 
 #include "scree/core/byte_order_mark.hpp"
 #include "scree/core/can_frame.hpp"
+#include "scree/core/lower_case.hpp"
 
 namespace scree::encoder {
 namespace {
@@ -95,6 +97,12 @@ void set_id(MessageLine& message, std::uint32_t id) {
   message.id = id & kLargestExtendedId;
 }
 
+/// Takes the identifier of a message and the name of a signal in it.
+void take_signal(Scanner& scanner, MessageLine& signal) {
+  set_id(signal, scanner.number<std::uint32_t>());
+  signal.name = scanner.name();
+}
+
 /// Whether a line begins as a message or a signal.
 bool is_statement(std::string_view line) {
   const std::size_t begin = std::min(line.find_first_not_of(" \t"), line.size());
@@ -118,15 +126,46 @@ std::string_view cut_next_statement(std::string_view& line) {
   return {};
 }
 
+/// M is the selector, which is in every frame; m0 only in those where it is 0; m0M selects, too.
+void set_multiplexing(SignalLine& line, std::string_view word) {
+  line.is_selector = word.ends_with('M');
+  if (line.is_selector) word.remove_suffix(1);
+  if (!word.starts_with('m')) return;
+  Scanner scanner(word.substr(1));
+  line.because = scanner.number<std::int64_t>();
+}
+
+/// What is no range is passed over.
+void take_range(Scanner& scanner, DbcSignal& signal) {
+  Scanner range = scanner;
+  range.expect('[');
+  signal.low = range.number<double>();
+  range.expect('|');
+  signal.high = range.number<double>();
+  range.expect(']');
+  if (range.is_good()) {
+    scanner = range;
+  } else {
+    signal.low = signal.high = 0;
+  }
+}
+
+/// Whether the name of a value says that there is none.
+bool names_no_value(std::string_view name) {
+  const std::string label = lower_case(name);
+  constexpr std::array kWhole = {"sna", "na", "n/a"};
+  constexpr std::array kPart = {"not avail", "notavail", "not_avail", "unavail",
+                                "invalid",   "error",    "undefined", "fault"};
+  return std::ranges::find(kWhole, label) != kWhole.end() ||
+         std::ranges::any_of(
+             kPart, [&](const char* part) { return label.find(part) != std::string::npos; });
+}
+
 bool fits_a_frame(const DbcSignal& signal) {
   constexpr int kBits = 512;
   if (signal.start_bit < 0 || signal.start_bit >= kBits) return false;
   if (signal.length < 1 || signal.length > 64) return false;
-  EncoderSettings layout;
-  layout.start_bit = signal.start_bit;
-  layout.length = signal.length;
-  layout.byte_order = signal.byte_order;
-  return layout.frame_bytes() <= kBits / 8;
+  return signal.frame_bytes() <= kBits / 8;
 }
 
 }  // namespace
@@ -183,8 +222,7 @@ std::optional<SignalLine> parse_signal_line(std::string_view line) {
   result.name = scanner.name();
   DbcSignal& signal = result.signal;
   if (!scanner.take(':')) {
-    // M is the selector, which is in every frame; m0 (or m0M) only in those where it is 0.
-    if (scanner.name().starts_with('m')) result.fault = "is multiplexed: not in every frame";
+    set_multiplexing(result, scanner.name());
     scanner.expect(':');
   }
   signal.start_bit = scanner.number<int>();
@@ -201,6 +239,7 @@ std::optional<SignalLine> parse_signal_line(std::string_view line) {
   scanner.expect(',');
   signal.offset = scanner.number<double>();
   scanner.expect(')');
+  take_range(scanner, signal);
   signal.unit = scanner.quoted();
   if (!scanner.is_good()) {
     result.fault = scanner.fault();
@@ -216,11 +255,35 @@ std::optional<FloatLine> parse_float_line(std::string_view line) {
   Scanner scanner(line);
   if (!is_keyword(scanner, "SIG_VALTYPE_")) return std::nullopt;
   FloatLine result;
-  set_id(result.signal, scanner.number<std::uint32_t>());
-  result.signal.name = scanner.name();
+  take_signal(scanner, result.signal);
   scanner.take(':');
   result.type = scanner.number<int>();
   if (!scanner.is_good() || result.type == 0) return std::nullopt;
+  return result;
+}
+
+std::optional<ValuesLine> parse_values_line(std::string_view line) {
+  Scanner scanner(line);
+  if (!is_keyword(scanner, "VAL_")) return std::nullopt;
+  ValuesLine result;
+  take_signal(scanner, result.signal);
+  while (true) {
+    const auto value = scanner.number<std::int64_t>();
+    const std::string_view name = scanner.quoted();
+    if (!scanner.is_good()) return result;
+    if (names_no_value(name)) result.unavailable.push_back(value);
+  }
+}
+
+std::optional<SelectionLine> parse_selection_line(std::string_view line) {
+  Scanner scanner(line);
+  if (!is_keyword(scanner, "SG_MUL_VAL_")) return std::nullopt;
+  SelectionLine result;
+  take_signal(scanner, result.signal);
+  result.selector = scanner.name();
+  const auto first = scanner.number<std::int64_t>();
+  scanner.expect('-');
+  result.is_one_value = scanner.number<std::int64_t>() == first && !scanner.take(',');
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "scree/drivers/encoder/dbc.hpp"
 
@@ -50,6 +51,8 @@ struct SignalLine {
   std::string_view name;
   std::string fault;  ///< why it cannot be used; empty when it can
   DbcSignal signal;
+  bool is_selector = false;             ///< M: other signals are there by its value
+  std::optional<std::int64_t> because;  ///< m3: it is there where the selector is 3
 };
 std::optional<SignalLine> parse_signal_line(std::string_view line);
 
@@ -60,6 +63,21 @@ struct FloatLine {
   int type = 0;
 };
 std::optional<FloatLine> parse_float_line(std::string_view line);
+
+/// `VAL_ 464 WHEEL_SPEED_FL 255 "SNA" 254 "Error";`: those of its values that stand for none.
+struct ValuesLine {
+  MessageLine signal;  ///< as above
+  std::vector<std::int64_t> unavailable;
+};
+std::optional<ValuesLine> parse_values_line(std::string_view line);
+
+/// `SG_MUL_VAL_ 464 SPEED MODE 3-3, 5-7;`: where MODE has these values SPEED is there.
+struct SelectionLine {
+  MessageLine signal;  ///< as above
+  std::string_view selector;
+  bool is_one_value = false;
+};
+std::optional<SelectionLine> parse_selection_line(std::string_view line);
 
 /// `BA_ "SystemSignalLongSymbol" SG_ 464 SHORT "LONG";`, or SystemMessageLongSymbol BO_ without
 /// SHORT: names of more than 32 characters stand at the end of a file, as every tool shows them.

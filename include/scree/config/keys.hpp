@@ -61,6 +61,8 @@ void for_every_key(AnySettings& settings, Visit&& visit) {
   key("signal", encoder.signal, "", 0, 0, "its signal there: MESSAGE.SIGNAL");
   key("can_id", encoder.can_id, "", 0, 0x1FFFFFFF,
       "identifier of its frame; above 0x7FF: an extended (29-bit) one");
+  key("extended", encoder.is_extended, "", 0, 0,
+      "whether the identifier is an extended one although it is not above 0x7FF");
   key("start_bit", encoder.start_bit, "", 0, 511,
       "DBC numbering: for big_endian the most significant bit's position");
   key("length", encoder.length, "bit", 1, 64, "length of the signal");

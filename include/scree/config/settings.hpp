@@ -5,6 +5,8 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -103,13 +105,23 @@ struct ImuSettings {
   }
 };
 
-struct EncoderSettings {
+/// Where a signal lies in the data of a frame, by the rules of DBC files.
+struct SignalPlace {
+  int start_bit = 0, length = 32;
+  ByteOrder byte_order = ByteOrder::little_endian;
+
+  /// Bytes that a frame must have to hold the signal.
+  int frame_bytes() const {
+    if (byte_order == ByteOrder::little_endian) return (start_bit + length + 7) / 8;
+    // In the first byte the signal has the bits from its start downwards, then whole bytes follow.
+    return start_bit / 8 + 1 + std::max(length - start_bit % 8 - 1 + 7, 0) / 8;
+  }
+};
+
+struct EncoderSettings : SignalPlace {
   std::string interface = "can0";
   std::string dbc, signal;
   std::int64_t can_id = 0x1A0;
-  int start_bit = 0;
-  int length = 32;
-  ByteOrder byte_order = ByteOrder::little_endian;
   bool is_signed = true;
   EncoderKind kind = EncoderKind::counter;
   double scale = 0.000157;
@@ -118,22 +130,26 @@ struct EncoderSettings {
   double max_speed = 5.0;
   double max_acceleration = 10.0;
 
+  bool is_extended = false;  ///< 29 bits although can_id is not above 0x7FF
+
   // No keys: what only a DBC file says, filled in by encoder::with_dbc().
-  bool is_extended = false;       ///< 29 bits although can_id is not above 0x7FF
   double factor = 1, offset = 0;  ///< scale multiplies raw * factor + offset
   bool is_float = false;          ///< raw holds the bits of a float (length 32) or a double (64)
   bool any_source = false;        ///< J1939: can_id stands for its parameter group from any source
+  /// What raw * factor + offset can be; without end where nothing is known.
+  double lowest = -std::numeric_limits<double>::infinity();
+  double highest = std::numeric_limits<double>::infinity();
+  std::vector<std::int64_t> unavailable;  ///< raw values that stand for "not available", "error"
+  /// An unsigned signal that must have a value for a frame to hold the encoder's.
+  struct Selector : SignalPlace {
+    std::int64_t value = 0;
+  };
+  std::optional<Selector> selector;
 
   bool has_extended_id() const { return is_extended || can_id > 0x7FF; }
   /// The bits of an identifier that must agree with can_id: from any source those of the parameter
   /// group (SAE J1939-21: neither the priority nor the source).
   std::uint32_t id_mask() const { return any_source ? 0x03FFFF00U : 0x1FFFFFFFU; }
-  /// Bytes that a frame must have to hold the signal.
-  int frame_bytes() const {
-    if (byte_order == ByteOrder::little_endian) return (start_bit + length + 7) / 8;
-    // In the first byte the signal has the bits from its start downwards, then whole bytes follow.
-    return start_bit / 8 + 1 + std::max(length - start_bit % 8 - 1 + 7, 0) / 8;
-  }
 };
 
 /// A box of the robot's body in `base`, metres.

@@ -105,6 +105,27 @@ TEST(Dbc, SaysWhyASignalCannotBeUsed) {
   }
 }
 
+TEST(Dbc, ReadsRangeValuesAndSelector) {
+  constexpr std::string_view kMore =
+      "BO_ 288 W: 8 X\n SG_ Mode M : 0|4@1+ (1,0) [0|15] \"\" X\n"
+      " SG_ V m3 : 8|8@1+ (0.01,0) [0|2.5] \"m/s\" X\n SG_ U m4 : 8|8@1+ (1,0) [0|x] \"\" X\n"
+      " SG_ R m5 : 8|8@1+ (1,0) [0|1] \"\" X\n"
+      "VAL_ 288 V 255 \"SNA\" 254 \"Sensor error\" 3 \"fast\" ;\nVAL_ 288 U 1 \"NA\" ;\n"
+      "SG_MUL_VAL_ 288 V Mode 3-3;\nSG_MUL_VAL_ 288 R Mode 5-5, 7-9;\n";
+  const auto signal = find_signal(kMore, "W.V", "robot.dbc");
+  ASSERT_TRUE(signal) << signal.error().message;
+  EXPECT_EQ(signal->low, 0);
+  EXPECT_EQ(signal->high, 2.5);
+  EXPECT_EQ(signal->unavailable, (std::vector<std::int64_t>{255, 254}));
+  ASSERT_TRUE(signal->selector);
+  EXPECT_EQ(signal->selector->length, 4);
+  EXPECT_EQ(signal->selector->value, 3);
+  const auto without = find_signal(kMore, "W.U", "robot.dbc");
+  ASSERT_TRUE(without) << without.error().message;
+  EXPECT_EQ(without->low, without->high) << "what is no range says nothing";
+  EXPECT_THAT(error_of("W.R", kMore), HasSubstr("ranges of values"));
+}
+
 TEST(Dbc, NamesWhatIsNearAMistypedName) {
   EXPECT_THAT(error_of("WHEEL_SPEEDS.FRONT_LEFD"),
               AllOf(HasSubstr("robot.dbc: message WHEEL_SPEEDS has no signal FRONT_LEFD"),
@@ -219,31 +240,33 @@ TEST(WithDbc, FillsInTheSettings) {
   EXPECT_EQ(with_dbc(without, "/nonexistent/robot.toml")->can_id, without.can_id);
 }
 
-TEST(WithDbc, AScaleThatCannotBeForTheUnitIsRefused) {
-  const TemporaryFolder folder;
-  folder.write("robot.dbc", kDbc);
-  const auto error = [&](const std::string& signal, EncoderKind kind, double scale) {
-    const auto filled = with_dbc(settings_for(signal, kind, scale), folder / "robot.toml");
-    return filled ? "no error" : filled.error().message;
-  };
-  const std::string left = "WHEEL_SPEEDS.FRONT_LEFT";
-  EXPECT_EQ(error(left, EncoderKind::speed, 0.277778), "no error");
-  EXPECT_EQ(error(left, EncoderKind::speed, -0.27), "no error");
-  EXPECT_THAT(error(left, EncoderKind::speed, 1), HasSubstr("1 kph is 0.277778 m/s"));
-  EXPECT_THAT(error(left, EncoderKind::counter, 0.277778), HasSubstr("encoder.kind is counter"));
-  EXPECT_THAT(error("Drive.Way", EncoderKind::counter, 0.000157), HasSubstr("1 m is 1 m"));
-  EXPECT_EQ(error("Drive.Ticks", EncoderKind::counter, 0.000157), "no error");
-}
-
 TEST(WithDbc, UnitsAreComparedWithoutCaseAndBlanks) {
   const TemporaryFolder folder;
-  for (const char* unit : {"KPH", "Kph", "Km/h", "km / h"}) {
+  for (const char* unit :
+       {"KPH", "Kph", "Km/h", "km / h", "[km/h]", "km/hr", "kilometers per hour", "kmph"}) {
     folder.write("robot.dbc",
                  fmt::format("BO_ 1 M: 8 X\n SG_ S : 0|16@1+ (0.01,0) [0|1] \"{}\" X\n", unit));
     const auto filled = with_dbc(settings_for("M.S", EncoderKind::speed, 1), folder / "robot.toml");
     ASSERT_FALSE(filled) << unit;
     EXPECT_THAT(filled.error().message, HasSubstr("is 0.277778 m/s"));
   }
+}
+
+TEST(WithDbc, AScaleThatCannotBeForTheUnitIsRefused) {
+  const TemporaryFolder folder;
+  const auto is_taken = [&](const char* unit, double scale) {
+    folder.write("robot.dbc",
+                 fmt::format("BO_ 1 M: 8 X\n SG_ S : 0|16@1+ (1,0) [0|1] \"{}\" X\n", unit));
+    return with_dbc(settings_for("M.S", EncoderKind::speed, scale), folder / "robot.toml")
+        .has_value();
+  };
+  for (const char* unit : {"mi/h", "knots", "ft/s", "m/min", "rpm", "U/min", "deg/s"}) {
+    EXPECT_FALSE(is_taken(unit, 1)) << unit;
+  }
+  EXPECT_TRUE(is_taken("meters / second", 1));
+  EXPECT_TRUE(is_taken("furlongs", 1)) << "nobody knows";
+  EXPECT_TRUE(is_taken("rpm", 0.02)) << "a wheel of 1.2 m around";
+  EXPECT_TRUE(is_taken("rpm", 0.0004)) << "its motor";
 }
 
 TEST(WithDbc, AFloatingPointNumberCanOnlyBeASpeed) {

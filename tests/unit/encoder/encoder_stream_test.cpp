@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <set>
 #include <tuple>
 #include <vector>
@@ -61,6 +62,63 @@ TEST(EncoderStream, OfAParameterGroupFromAnySourceTheFirstIsTaken) {
   }
   EXPECT_EQ(stream.counters().accepted, 2U);
   EXPECT_EQ(stream.counters().other, 2U);
+}
+
+TEST(EncoderStream, CountsFramesThatAreNearlyTheEncoders) {
+  EncoderSettings settings;
+  settings.can_id = 0x18FEBF0B;
+  EncoderStream stream(settings, {});
+  CanFrame frame = frame_of(0, 0x18FEBF17, 1);
+  frame.is_extended = true;
+  stream.take(frame);
+  EXPECT_EQ(stream.counters().other_source, 1U);
+  EXPECT_EQ(stream.counters().last_other_source, 0x18FEBF17U);
+
+  EncoderStream standard({}, {});
+  frame.id = 0x1A0;
+  standard.take(frame);
+  EXPECT_EQ(standard.counters().other_form, 1U);
+  EXPECT_EQ(standard.counters().other, 1U);
+}
+
+TEST(EncoderStream, AMultiplexedSignalIsInTheFramesThatSelectIt) {
+  EncoderSettings settings;
+  settings.start_bit = 8;
+  settings.length = 16;
+  settings.selector = {{.start_bit = 4, .length = 4}, 3};
+  EncoderStream stream(settings, {});
+  CanFrame frame = frame_of(10'000'000, 0x1A0, 0x30);
+  stream.take(frame);
+  frame = frame_of(20'000'000, 0x1A0, 0x20);
+  stream.take(frame);
+  frame = frame_of(30'000'000, 0x1A0, 0x30);
+  frame.size = 0;
+  stream.take(frame);
+  EXPECT_EQ(stream.counters().accepted, 1U);
+  EXPECT_EQ(stream.counters().other, 1U);
+  EXPECT_EQ(refused(stream, Refusal::size), 1U);
+}
+
+TEST(EncoderStream, RefusesValuesThatStandForNone) {
+  EncoderSettings settings;
+  settings.kind = EncoderKind::speed;
+  settings.is_signed = false;
+  settings.length = 8;
+  settings.scale = 0.01;
+  settings.lowest = 0;
+  settings.highest = 250;
+  settings.unavailable = {77};
+  EncoderStream stream(settings, {});
+  std::int64_t t_ns = 0;
+  for (const std::uint8_t raw : std::initializer_list<std::uint8_t>{10, 77, 255, 251, 250, 10}) {
+    stream.take(frame_of(t_ns += 10'000'000, 0x1A0, raw));
+  }
+  EXPECT_EQ(refused(stream, Refusal::unavailable), 3U);
+
+  settings.highest = std::numeric_limits<double>::infinity();
+  EncoderStream unbounded(settings, {});
+  unbounded.take(frame_of(t_ns, 0x1A0, 255));
+  EXPECT_EQ(unbounded.counters().accepted, 1U) << "a counter's highest value is one";
 }
 
 TEST(EncoderStream, ASpeedMayBeAFloatingPointNumber) {

@@ -89,6 +89,27 @@ void EncoderCapture::report(const EncoderStream& stream) const {
   }
   if (log_.counters().all_refused() > 0) fmt::print(stderr, "scree: {}\n", refused_lines(log_));
   if (counters.all_refused() > 0) fmt::print(stderr, "scree: {}\n", refused_frames(stream));
+  if (settings_.any_source && counters.other_source > 0) {
+    fmt::print(
+        stderr,
+        "scree: {}: {} frames of the encoder's J1939 group come from another device "
+        "(0x{:X}): the first device that sent is taken; name one by encoder.dbc's identifier\n",
+        name_, counters.other_source, counters.last_other_source);
+  }
+}
+
+/// What came nearest to the encoder's frames.
+std::string EncoderCapture::like_it(const encoder::EncoderCounters& counters) const {
+  if (counters.other_form > 0) {
+    return fmt::format("; {} have it as {} one: set encoder.extended = {}", counters.other_form,
+                       settings_.has_extended_id() ? "a standard (11-bit)" : "an extended (29-bit)",
+                       !settings_.has_extended_id());
+  }
+  if (counters.other_source > 0) {
+    return fmt::format("; {} of the same J1939 group come from another device (0x{:X})",
+                       counters.other_source, counters.last_other_source);
+  }
+  return "";
 }
 
 std::string EncoderCapture::why_nothing(const EncoderStream& stream) const {
@@ -96,8 +117,9 @@ std::string EncoderCapture::why_nothing(const EncoderStream& stream) const {
     return fmt::format("{}: no signal: {}", name_, refused_frames(stream));
   }
   if (frames_.contains(settings_.interface)) {
-    return fmt::format("{}: no frame with identifier 0x{:X} among the {} of {}", name_,
-                       settings_.can_id, stream.counters().other, settings_.interface);
+    return fmt::format("{}: no frame with identifier 0x{:X}{} among the {} of {}{}", name_,
+                       settings_.can_id, settings_.selector ? " and the signal's selector" : "",
+                       stream.counters().other, settings_.interface, like_it(stream.counters()));
   }
   if (!frames_.empty()) {
     const auto& [interface, count] = *frames_.begin();

@@ -40,6 +40,7 @@ public:
   std::string why_nothing(const encoder::EncoderStream& stream) const;
 
 private:
+  std::string like_it(const encoder::EncoderCounters& counters) const;
   std::string name_;
   CanLogReader log_;
   SteadyTime steady_;

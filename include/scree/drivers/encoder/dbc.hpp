@@ -2,8 +2,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "scree/config/settings.hpp"
 #include "scree/core/result.hpp"
@@ -13,21 +15,22 @@
 namespace scree::encoder {
 
 /// One signal of one message.
-struct DbcSignal {
+struct DbcSignal : SignalPlace {
   std::uint32_t id = 0;  ///< of the frame
   bool is_extended = false;
-  int start_bit = 0, length = 0;
-  ByteOrder byte_order = ByteOrder::little_endian;
   bool is_signed = false;
-  double factor = 1, offset = 0;  ///< raw * factor + offset is the physical value ...
-  std::string unit;               ///< ... in this unit, which is free text
-  bool is_float = false;          ///< raw is the bits of a float or a double
+  double factor = 1, offset = 0;          ///< raw * factor + offset is the physical value ...
+  std::string unit;                       ///< ... in this unit, which is free text
+  bool is_float = false;                  ///< raw is the bits of a float or a double
+  double low = 0, high = 0;               ///< range of the physical value; equal: unknown
+  std::vector<std::int64_t> unavailable;  ///< raw values that are named as no value (VAL_)
+  std::optional<EncoderSettings::Selector> selector;  ///< where it is multiplexed
 };
 
-/// Finds MESSAGE.SIGNAL in a file's text. Lines that are none of BO_, SG_ and SIG_VALTYPE_ are
-/// passed over. One sentence where there is no such message or signal (with the names that are
-/// nearest, or the first line that cannot be read), where it is multiplexed or does not
-/// fit a frame. `origin` stands for the file's name in it.
+/// Finds MESSAGE.SIGNAL in a file's text. Lines that tell nothing of signals are passed over. One
+/// sentence where there is no such message or signal (with the names that are nearest, or the first
+/// line that cannot be read), where it does not fit a frame, or is multiplexed in another way than
+/// by one value of one selector. `origin` stands for the file's name in it.
 Result<DbcSignal> find_signal(std::string_view dbc, std::string_view name,
                               const std::string& origin);
 

@@ -16,7 +16,10 @@ namespace scree::encoder {
 struct EncoderCounters {
   std::uint64_t accepted = 0;                      ///< samples handed out
   std::array<std::uint64_t, kRefusals> refused{};  ///< by Refusal; [none] stays 0
-  std::uint64_t other = 0;                         ///< frames with other identifiers
+  std::uint64_t other = 0;                         ///< frames that are not the encoder's
+  std::uint64_t other_form = 0;                    ///< of these, its identifier in the other form
+  std::uint64_t other_source = 0;                  ///< of these, its J1939 group from elsewhere
+  std::uint32_t last_other_source = 0;             ///< identifier of the last one
   std::uint64_t rebased = 0;                       ///< see Odometer
 
   std::uint64_t all_refused() const;
@@ -40,6 +43,7 @@ public:
 
 private:
   bool is_mine(const CanFrame& frame);
+  void count_other(const CanFrame& frame);
   void refuse(Refusal reason) { ++counters_.refused[static_cast<std::size_t>(reason)]; }
 
   EncoderSettings settings_;

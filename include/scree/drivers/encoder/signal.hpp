@@ -18,6 +18,15 @@ namespace scree::encoder {
 std::optional<std::int64_t> read_signal(const EncoderSettings& layout,
                                         std::span<const std::uint8_t> data);
 
+/// Whether a raw value stands for none: named so in the DBC file, or one of the highest of its bits
+/// (the lowest, too, of a signed one), which are codes by custom, and outside of the signal's range
+/// (SAE J1939-71, 5.1.2: from 251/256 of the bits on).
+bool is_unavailable(const EncoderSettings& layout, std::int64_t raw);
+
+/// Whether a frame that may hold the signal has the value of the selector for it. True where there
+/// is no selector, nothing where the data end before it.
+std::optional<bool> is_selected(const EncoderSettings& layout, std::span<const std::uint8_t> data);
+
 /// What a raw value means: metres for a counter, m/s for a speed.
 double scaled(const EncoderSettings& layout, std::int64_t raw);
 
