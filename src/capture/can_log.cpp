@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <ctime>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -36,13 +37,32 @@ bool cut(std::string_view& text, char separator, std::string_view& before) {
   return true;
 }
 
-/// `1598601600.123456`
+/// `2020-08-28 10:00:00` (candump -tA) in the time of the place where it is read: the log does not
+/// say which it is.
+bool read_date(std::string_view text, std::int64_t& seconds) {
+  std::tm date{};
+  std::string_view year, month, day, hour, minute;
+  const bool is_read = cut(text, '-', year) && cut(text, '-', month) && cut(text, ' ', day) &&
+                       cut(text, ':', hour) && cut(text, ':', minute) &&
+                       read_number(year, 10, date.tm_year) && read_number(month, 10, date.tm_mon) &&
+                       read_number(day, 10, date.tm_mday) && read_number(hour, 10, date.tm_hour) &&
+                       read_number(minute, 10, date.tm_min) && read_number(text, 10, date.tm_sec);
+  if (!is_read || date.tm_year < 1970 || date.tm_year > 9999) return false;
+  date.tm_year -= 1900;
+  date.tm_mon -= 1;
+  date.tm_isdst = -1;
+  seconds = std::mktime(&date);
+  return seconds >= 0;
+}
+
+/// `1598601600.123456`, or a date.
 bool read_time(std::string_view text, std::int64_t& t_ns) {
   constexpr std::int64_t kMostSeconds = 9'000'000'000;  // as nanoseconds they fit in 64 bits
   std::string_view whole;
   std::int64_t seconds = 0, fraction = 0;
   if (!cut(text, '.', whole) || text.size() > 9) return false;
-  if (!read_number(whole, 10, seconds) || !read_number(text, 10, fraction)) return false;
+  if (!read_number(text, 10, fraction)) return false;
+  if (!read_number(whole, 10, seconds) && !read_date(whole, seconds)) return false;
   if (seconds > kMostSeconds) return false;
   for (std::size_t digits = text.size(); digits < 9; ++digits) fraction *= 10;
   t_ns = seconds * kSecond + fraction;
@@ -173,6 +193,9 @@ Result<CanLogReader> CanLogReader::open(const std::filesystem::path& file) {
   if (!reader.stream_.is_open()) return fail(fmt::format("cannot read {}", file.string()));
   if (const std::string_view packer = packed_with(file); !packer.empty()) {
     return fail(fmt::format("{}: is packed with {}: unpack it first", file.string(), packer));
+  }
+  if (const int first = reader.stream_.peek(); first == 0xFF || first == 0xFE) {
+    return fail(file.string() + ": is text of 16 bits a character (UTF-16): save it as UTF-8");
   }
   return reader;
 }

@@ -55,8 +55,9 @@ Result<PcapReader> PcapReader::open(const std::filesystem::path& file) {
   std::unique_ptr<pcap, Close> handle(pcap_open_offline_with_tstamp_precision(
       file.c_str(), PCAP_TSTAMP_PRECISION_NANO, reason.data()));
   if (!handle) {
+    const std::string kind = other_kind(file);
     return fail(fmt::format("{}: cannot be read as a pcap or pcapng file ({})", file.string(),
-                            reason.data()));
+                            kind.empty() ? reason.data() : kind));
   }
   return PcapReader(file.string(), std::move(handle), nullptr);
 }
@@ -66,10 +67,19 @@ std::uint64_t PcapReader::position() const {
                  : static_cast<std::uint64_t>(std::max(ftell(pcap_file(handle_.get())), 0L));
 }
 
+void PcapReader::break_off(std::string_view why) {
+  std::error_code ignored;
+  const std::uint64_t size = std::filesystem::file_size(name_, ignored);
+  broken_off_ = fmt::format("{}: breaks off: {}", name_, why);
+  if (const std::uint64_t read = position(); read < size) {
+    broken_off_ += fmt::format("; the last {} of its {} bytes are not read", size - read, size);
+  }
+}
+
 bool PcapReader::next_of_pcapng(PcapRecord& record) {
   if (pcapng_->next(record)) return true;
   if (!pcapng_->fault().empty()) {
-    broken_off_ = fmt::format("{}: breaks off: {}", name_, pcapng_->fault());
+    break_off(pcapng_->fault());
   }
   return false;
 }
@@ -81,7 +91,7 @@ bool PcapReader::next(PcapRecord& record) {
   const int result = pcap_next_ex(handle_.get(), &header, &bytes);
   if (result != 1) {
     if (result == PCAP_ERROR) {
-      broken_off_ = fmt::format("{}: breaks off: {}", name_, pcap_geterr(handle_.get()));
+      break_off(pcap_geterr(handle_.get()));
     }
     return false;
   }
@@ -90,7 +100,7 @@ bool PcapReader::next(PcapRecord& record) {
   const std::int64_t seconds = static_cast<std::uint32_t>(header->ts.tv_sec);
   const std::int64_t nanoseconds = header->ts.tv_usec;
   if (nanoseconds < 0 || nanoseconds >= kSecond) {
-    broken_off_ = fmt::format("{}: breaks off: a record has an impossible time", name_);
+    break_off("a record has an impossible time");
     return false;
   }
   record.arrival_ns = seconds * kSecond + nanoseconds;

@@ -12,6 +12,8 @@
 
 #include "pcd_body.hpp"
 #include "pcd_header.hpp"
+#include "scree/capture/capture.hpp"
+#include "scree/core/lower_case.hpp"
 #include "scree/core/read_file.hpp"
 
 namespace scree {
@@ -123,7 +125,10 @@ bool is_pcd(const std::filesystem::path& file) {
   stream.read(head.data(), head.size());
   std::string_view text(head.data(), static_cast<std::size_t>(stream.gcount()));
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
-  return text.starts_with("# .PCD") || text.starts_with("VERSION") || text.starts_with("FIELDS");
+  const std::string begin = lower_case(text);
+  const bool is_pointer = begin.starts_with("version https");  // of Git LFS
+  return begin.starts_with("# .pcd") || begin.starts_with("fields") ||
+         (begin.starts_with("version") && !is_pointer);
 }
 
 Result<PcdCloud> read_pcd(const std::filesystem::path& file) {
@@ -134,6 +139,7 @@ Result<PcdCloud> read_pcd(const std::filesystem::path& file) {
     auto cloud = read_points(*bytes);
     if (cloud) return cloud;
     reason = cloud.error().message;
+    if (const std::string kind = is_pcd(file) ? "" : other_kind(file); !kind.empty()) reason = kind;
   } catch (const std::exception& error) {
     reason = fmt::format("cannot be read ({})", error.what());
   }

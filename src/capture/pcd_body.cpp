@@ -63,7 +63,11 @@ Result<Bytes> unpacked(std::string_view body, const PcdHeader& header) {
   std::memcpy(&packed, body.data(), sizeof packed);
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(body.data()) + kSizes;
   Bytes columns(header.points * header.point_size);
-  if (!unpack_lzf({bytes, packed}, columns)) return fail("has points that cannot be read");
+  if (!unpack_lzf({bytes, packed}, columns)) {
+    // What would not become smaller is left as it is by pypcd4.
+    if (packed != columns.size()) return fail("has points that cannot be read");
+    std::copy_n(bytes, packed, columns.begin());
+  }
   return interleaved(columns, header);
 }
 
@@ -130,7 +134,7 @@ std::string store_line(std::string_view line, const PcdHeader& header, std::uint
   for (const PcdField& field : header.fields) {
     for (std::size_t i = 0; i < field.count; ++i) {
       const std::string_view word = next_word(line);
-      if (field.name == "_") continue;
+      if (field.name == kPadding) continue;
       if (word.empty()) return "too few values";
       if (!store_word(word, field, point + field.offset + i * field.size)) {
         constexpr std::size_t kShown = 30;
@@ -139,6 +143,16 @@ std::string store_line(std::string_view line, const PcdHeader& header, std::uint
     }
   }
   return "";
+}
+
+std::size_t lines_with_words(std::string_view text) {
+  std::size_t count = 0;
+  while (!text.empty()) {
+    std::string_view line = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(line.size() + 1, text.size()));
+    if (!next_word(line).empty()) ++count;
+  }
+  return count;
 }
 
 Result<Bytes> parsed(std::string_view text, const PcdHeader& header) {
@@ -152,6 +166,8 @@ Result<Bytes> parsed(std::string_view text, const PcdHeader& header) {
     if (!wrong.empty()) return fail(fmt::format("has {} for point {}", wrong, count + 1));
     ++count;
   }
+  const std::size_t more = lines_with_words(text);
+  if (more > 0) return fail(too_many(more));
   if (count == header.points) return points;
   return fail(fmt::format("is cut: {} of {} points are there", count, header.points));
 }

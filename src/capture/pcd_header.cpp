@@ -8,6 +8,8 @@
 #include <cstring>
 #include <map>
 
+#include "scree/core/lower_case.hpp"
+
 namespace scree {
 namespace {
 
@@ -37,14 +39,6 @@ std::optional<std::size_t> number(std::string_view word) {
   return value;
 }
 
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return result;
-}
-
 char upper(char c) {
   return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
 }
@@ -67,14 +61,16 @@ Result<Lines> header_lines(std::string_view file) {
     Words words = split(head.substr(begin, end - begin));
     begin = end + 1;
     if (words.empty() || words[0].starts_with('#')) continue;
-    const std::string_view key = words[0];
     constexpr std::array<std::string_view, 11> kKeys = {"VERSION",   "FIELDS", "COLUMNS", "SIZE",
                                                         "TYPE",      "COUNT",  "WIDTH",   "HEIGHT",
                                                         "VIEWPOINT", "POINTS", "DATA"};
-    if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end()) {
+    const auto* const found = std::ranges::find_if(
+        kKeys, [&](auto each) { return lower_case(each) == lower_case(words[0]); });
+    if (found == kKeys.end()) {
       if (lines.values.empty()) return fail("is not a PCD file");
       return fail("has an unknown line in its header");
     }
+    const std::string_view key = *found;
     words.erase(words.begin());
     if (!lines.values.emplace(key, std::move(words)).second) {
       return fail(fmt::format("has two {} lines in its header", key));
@@ -129,7 +125,8 @@ Result<std::vector<PcdField>> read_fields(const Lines& lines) {
     const std::size_t bytes = size.value_or(0);
     const bool known =
         (bytes == 4 || bytes == 8) ? whole || kind == 'F' : whole && (bytes == 1 || bytes == 2);
-    if (!known || !count || *count < 1 || *count > kMostCount) {
+    const std::size_t fewest = (*names)[i] == kPadding ? 0 : 1;
+    if (!known || !count || *count < fewest || *count > kMostCount) {
       return fail(
           fmt::format("has a field {} of a bad type, size or count", (*names)[i].substr(0, 40)));
     }
@@ -174,6 +171,21 @@ Result<Eigen::Vector3d> read_viewpoint(const Lines& lines) {
   return place;
 }
 
+/// What the body of a compressed file begins with.
+struct PackedSizes {
+  static constexpr std::size_t kBytes = 8;
+  std::uint32_t packed = 0, unpacked = 0;
+};
+
+/// Zeros where the body is too short.
+PackedSizes packed_sizes(std::string_view body) {
+  PackedSizes sizes;
+  if (body.size() < PackedSizes::kBytes) return sizes;
+  std::memcpy(&sizes.packed, body.data(), sizeof sizes.packed);
+  std::memcpy(&sizes.unpacked, body.data() + sizeof sizes.packed, sizeof sizes.unpacked);
+  return sizes;
+}
+
 std::string bytes_missing(std::size_t needed, std::size_t there) {
   return fmt::format("is cut: {} bytes of points, of which {} are there", needed, there);
 }
@@ -184,15 +196,19 @@ std::optional<std::string> mismatch(const PcdHeader& header, std::string_view bo
   switch (header.data) {
     case PcdData::binary:
       if (body.size() < size) return bytes_missing(size, body.size());
+      if (const std::size_t more = (body.size() - size) / header.point_size; more > 0) {
+        return too_many(more);
+      }
       return std::nullopt;
     case PcdData::binary_compressed: {
-      std::uint32_t packed = 0, unpacked = 0;
-      if (body.size() < 8) return bytes_missing(8, body.size());
-      std::memcpy(&packed, body.data(), 4);
-      std::memcpy(&unpacked, body.data() + 4, 4);
-      if (packed > body.size() - 8) return bytes_missing(packed, body.size() - 8);
+      const PackedSizes sizes = packed_sizes(body);
+      if (body.size() < PackedSizes::kBytes) {
+        return bytes_missing(PackedSizes::kBytes, body.size());
+      }
+      const std::size_t there = body.size() - PackedSizes::kBytes;
+      if (sizes.packed > there) return bytes_missing(sizes.packed, there);
       // The format (LZF) turns three bytes into at most 264.
-      if (unpacked != size || unpacked > 88 * std::size_t{packed}) {
+      if (sizes.unpacked != size || sizes.unpacked > 88 * std::size_t{sizes.packed}) {
         return "has compressed data of another size than its header says";
       }
       return std::nullopt;
@@ -210,9 +226,10 @@ std::optional<std::string> mismatch(const PcdHeader& header, std::string_view bo
   return "has an unknown kind of data";
 }
 
-/// Padding is named "_"; binary_compressed leaves it out of the file.
-void remove_padding(PcdHeader& header) {
-  std::erase_if(header.fields, [](const PcdField& field) { return field.name == "_"; });
+/// PCL leaves padding out of compressed files. Others write it.
+void remove_padding(PcdHeader& header, std::string_view body) {
+  if (packed_sizes(body).unpacked == header.points * header.point_size) return;
+  std::erase_if(header.fields, [](const PcdField& field) { return field.name == kPadding; });
   header.point_size = 0;
   for (PcdField& field : header.fields) {
     field.offset = header.point_size;
@@ -222,9 +239,14 @@ void remove_padding(PcdHeader& header) {
 
 }  // namespace
 
+std::string too_many(std::size_t points) {
+  return fmt::format("has {} points more than its header says: mend WIDTH, HEIGHT and POINTS",
+                     points);
+}
+
 const PcdField* PcdHeader::find(std::initializer_list<std::string_view> names) const {
   for (const PcdField& field : fields) {
-    if (std::find(names.begin(), names.end(), lower(field.name)) != names.end()) return &field;
+    if (std::find(names.begin(), names.end(), lower_case(field.name)) != names.end()) return &field;
   }
   return nullptr;
 }
@@ -249,13 +271,14 @@ Result<PcdHeader> parse_pcd_header(std::string_view file) {
   if (header.points > kMostPoints) return fail("has more points than can be");
 
   const Words& data = lines->values.at("DATA");
-  if (data.size() == 1 && data[0] == "ascii") {
+  const std::string kind = data.size() == 1 ? lower_case(data[0]) : "";
+  if (kind == "ascii") {
     header.data = PcdData::ascii;
-  } else if (data.size() == 1 && data[0] == "binary") {
+  } else if (kind == "binary") {
     header.data = PcdData::binary;
-  } else if (data.size() == 1 && data[0] == "binary_compressed") {
+  } else if (kind == "binary_compressed") {
     header.data = PcdData::binary_compressed;
-    remove_padding(header);
+    remove_padding(header, file.substr(header.body));
   } else {
     return fail("has DATA that is neither ascii, binary nor binary_compressed");
   }

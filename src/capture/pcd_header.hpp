@@ -15,6 +15,9 @@ namespace scree {
 
 enum class PcdData : std::uint8_t { ascii, binary, binary_compressed };
 
+/// The name of fields that hold nothing.
+inline constexpr std::string_view kPadding = "_";
+
 struct PcdField {
   std::string name;
   char type = 'F';       ///< I, U or F
@@ -43,5 +46,8 @@ struct PcdHeader {
 /// succeeds, x, y and z are there, and the body is as long as the header says. An ascii body is
 /// long enough for the values that the header says.
 Result<PcdHeader> parse_pcd_header(std::string_view file);
+
+/// An error's sentence for points that follow those of the header: nobody knows what they are.
+std::string too_many(std::size_t points);
 
 }  // namespace scree

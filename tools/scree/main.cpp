@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cctype>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -9,6 +8,7 @@
 
 #include "commands.hpp"
 #include "common/usage_error.hpp"
+#include "scree/core/lower_case.hpp"
 
 namespace {
 
@@ -44,9 +44,7 @@ bool is_nan(std::string_view word) {
     word.remove_prefix(equals + 1);
   }
   if (word.starts_with('-') || word.starts_with('+')) word.remove_prefix(1);
-  std::string lower(word);
-  for (char& letter : lower) letter = static_cast<char>(std::tolower(letter));
-  return lower == "nan";
+  return scree::lower_case(word) == "nan";
 }
 
 /// A configuration may have many mistakes: a line each.
@@ -67,7 +65,9 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   add_all(app);
   if (const auto* const nan = std::find_if(argv + 1, argv + argc, is_nan); nan != argv + argc) {
-    std::fprintf(stderr, "scree: %s is no number (a file of that name is ./nan)\n", *nan);
+    const bool is_option = (*nan)[0] == '-' || (nan > argv + 1 && nan[-1][0] == '-');
+    std::fprintf(stderr, "scree: %s is no number%s\n", *nan,
+                 is_option ? "" : " (a file of that name is ./nan)");
     return kUsage;
   }
   try {

@@ -24,9 +24,8 @@ inline constexpr std::size_t kCanLineRefusals = 5;
 
 /// For people.
 inline constexpr std::array<std::string_view, kCanLineRefusals> kCanLineReasons = {
-    "accepted",
-    "not of the form (seconds.fraction) interface frame, as candump -L and candump -ta write it",
-    "time stamp is none of a clock, as candump -L and candump -ta write it",
+    "accepted", "not of the form (time) interface frame, as candump -L, -ta and -tA write it",
+    "time stamp is none of a clock, as candump -L, -ta and -tA write it",
     "identifier is neither 3 nor 8 hexadecimal digits in its range",
     "data are not whole bytes, or more than a frame holds"};
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "scree/capture/datagram.hpp"
 #include "scree/core/result.hpp"
@@ -60,6 +61,7 @@ public:
   const FrameCounters& frames() const { return frames_; }
 
 private:
+  void break_off(std::string_view why);
   struct Close {
     void operator()(pcap* handle) const;
   };

@@ -3,14 +3,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <ctime>
 #include <random>
 
 #include "scree/capture/capture.hpp"
+#include "scree/core/nanoseconds.hpp"
 #include "unit/temporary_folder.hpp"
 
 namespace scree {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -88,7 +91,7 @@ TEST(CanLine, ReadsWhatCandumpWritesForPeople) {
   EXPECT_EQ(refusal_of(" (1.0)  can0  1A0   [2]  A0 8"), CanLineRefusal::data);
   EXPECT_EQ(refusal_of(" (1.0)  can0  1A0   A0 86"), CanLineRefusal::form);
   EXPECT_EQ(refusal_of("  can0  1A0   [1]  A0"), CanLineRefusal::form) << "without a time";
-  EXPECT_EQ(refusal_of(" (2020-08-28 11:02:02.753742)  can0  1A0   [1]  A0"), CanLineRefusal::time);
+  EXPECT_EQ(refusal_of(" (2020-08-28 11:02:02.753742)  can0  1A0   [1]  A0"), CanLineRefusal::none);
 }
 
 TEST(CanLine, ReadsFdFrames) {
@@ -106,6 +109,23 @@ TEST(CanLine, ReadsFractionsOfAnyLengthAndLineEnds) {
   EXPECT_EQ(frame_of("(0000000005.000001) can0 1A0#01\r").t_ns, 5'000'001'000);
   EXPECT_EQ(frame_of("(5.1) can0 1A0#01 R").size, 1);
   EXPECT_EQ(frame_of("(5.1) can0 1A0#01 T\r").size, 1);
+}
+
+TEST(CanLine, ReadsDatesOfThePlaceWhereItIsRead) {
+  std::tm date{};
+  date.tm_year = 2023 - 1900;
+  date.tm_mon = 10;
+  date.tm_mday = 14;
+  date.tm_hour = 22;
+  date.tm_min = 13;
+  date.tm_sec = 20;
+  date.tm_isdst = -1;
+  const std::int64_t seconds = std::mktime(&date);
+  EXPECT_EQ(frame_of("(2023-11-14 22:13:20.000002) can0 1A0#01").t_ns, seconds * kSecond + 2000);
+  for (const char* line : {"(2023-11-14.5) can0 1A0#01", "(2023-11-14 22:13.5) can0 1A0#01",
+                           "(1823-11-14 22:13:20.5) can0 1A0#01", "(-:.5) can0 1A0#01"}) {
+    EXPECT_EQ(refusal_of(line), CanLineRefusal::time) << line;
+  }
 }
 
 TEST(CanLine, SaysWhatIsWrong) {
@@ -172,6 +192,21 @@ TEST(CanLogReader, AMissingFileIsOneSentence) {
   ASSERT_FALSE(reader);
   EXPECT_THAT(reader.error().message, HasSubstr("/nonexistent/can.log"));
   EXPECT_FALSE(CanLogReader::open("/"));
+}
+
+TEST(CanLogReader, TextOf16BitsIsNamed) {
+  const TemporaryFolder folder;
+  const auto reader = CanLogReader::open(folder.write("can.log", std::string("\xFF\xFE(\0", 4)));
+  ASSERT_FALSE(reader);
+  EXPECT_THAT(reader.error().message, HasSubstr("UTF-16"));
+}
+
+TEST(CanFile, OtherRecordingsInTheFolderAreNamed) {
+  const TemporaryFolder folder;
+  folder.write("candump-2020-08-28_110200.log", "x");
+  folder.write("scree.toml", "");
+  EXPECT_THAT(can_file(folder.path()).error().message,
+              AllOf(HasSubstr("no can.log"), HasSubstr("it has candump-2020-08-28_110200.log")));
 }
 
 TEST(CanFile, IsTheCaptureOrInItsFolder) {

@@ -178,6 +178,43 @@ TEST(Pcd, EveryBadFileIsOneSentence) {
               HasSubstr("points that cannot be read"));
 }
 
+TEST(Pcd, MorePointsThanTheHeaderSaysAreNotLeftOutSilently) {
+  const std::string point = packed(1.0F, 2.0F, 3.0F);
+  const auto xyz = [](const std::string& data) {
+    return header("x y z", "4 4 4", "F F F", "1", data);
+  };
+  EXPECT_THAT(error_of(xyz("binary") + point + point + point), HasSubstr("has 2 points more"));
+  EXPECT_THAT(error_of(xyz("ascii") + "1 2 3\n4 5 6\n"), HasSubstr("has 1 points more"));
+  EXPECT_EQ(error_of(xyz("ascii") + "1 2 3\n\n \n"), "no error");
+  EXPECT_EQ(error_of(xyz("binary") + point + "\n"), "no error");
+}
+
+TEST(Pcd, ReadsHeadersOfAnyCaseAndPaddingOfAnySize) {
+  const TemporaryFolder folder;
+  const auto lower = read_pcd(
+      folder.write("a.pcd",
+                   "# .pcd v.7\nversion .7\nfields x y z\nsize 4 4 4\ntype f f f\nwidth 1\n"
+                   "height 1\npoints 1\ndata ASCII\n1 2 3\n"));
+  ASSERT_TRUE(lower) << lower.error().message;
+  EXPECT_EQ(lower->z[0], 3);
+  EXPECT_TRUE(is_pcd(folder / "a.pcd"));
+  // A compressed file that has its padding, and points that would not become smaller.
+  const std::string head =
+      "VERSION 0.7\nFIELDS x _ y _ z\nSIZE 4 1 4 1 4\nTYPE F U F U F\nCOUNT 1 0 1 2 1\nWIDTH 1\n"
+      "HEIGHT 1\nPOINTS 1\nDATA binary_compressed\n";
+  const auto padded =
+      read_pcd(folder.write("b.pcd", head + packed(14U, 14U, 1.0F, 2.0F, std::uint16_t{0}, 3.0F)));
+  ASSERT_TRUE(padded) << padded.error().message;
+  EXPECT_EQ(padded->x[0], 1);
+  EXPECT_EQ(padded->y[0], 2);
+  EXPECT_EQ(padded->z[0], 3);
+}
+
+TEST(Pcd, AFileOfAnotherKindIsNamed) {
+  EXPECT_THAT(error_of("ply\nformat ascii 1.0\n"), HasSubstr("it is a point cloud (PLY)"));
+  EXPECT_THAT(error_of("version https://git-lfs.github.com/spec/v1\n"), HasSubstr("git lfs pull"));
+}
+
 TEST(Pcd, TakesTheOriginOffInDoubleWhereACloudLiesFarFromIt) {
   const TemporaryFolder folder;
   const auto at = [&](double x, double y, double z) {

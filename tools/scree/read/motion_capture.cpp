@@ -40,8 +40,13 @@ MotionCapture::MotionCapture(const std::filesystem::path& capture,
       encoder_stream_(encoder_settings_,
                       [&sensors](const EncoderSample& sample) { put(sensors, sample); }) {
   if (!std::filesystem::is_directory(capture)) return;
-  if (imu_file(capture)) imu_.emplace(capture, steps);
-  if (can_file(capture)) encoder_.emplace(capture, encoder_settings_, steps);
+  // A recording that was cut short leaves empty files.
+  const auto imu = imu_file(capture), can = can_file(capture);
+  if (imu && std::filesystem::file_size(*imu) > 0) imu_.emplace(capture, steps);
+  if (can) encoder_.emplace(capture, encoder_settings_, steps);
+  no_imu_ = imu ? imu->string() + ": the file is empty" : imu.error().message;
+  if (!can) no_encoder_ = can.error().message;
+  if (!imu && !can) no_motion_ = other_files(capture);
 }
 
 void MotionCapture::play_until(std::int64_t arrival_ns) {
@@ -56,11 +61,12 @@ void MotionCapture::finish() {
 
 void MotionCapture::report(const TimeSpan& lidar) const {
   if (!imu_ && !encoder_) {
-    note("neither IMU nor encoder in the capture: the lidar alone told how the robot moves");
+    note("neither IMU nor encoder in the capture: the lidar alone told how the robot moves" +
+         no_motion_);
     return;
   }
   if (!imu_) {
-    note("no IMU in the capture");
+    note(no_imu_);
   } else if (imu_stream_.counters().accepted == 0) {
     note(imu_->why_nothing(imu_stream_));
   } else {
@@ -73,7 +79,7 @@ void MotionCapture::report(const TimeSpan& lidar) const {
     }
   }
   if (!encoder_) {
-    note("no encoder in the capture");
+    note(no_encoder_);
   } else if (encoder_stream_.counters().accepted == 0) {
     note(encoder_->why_nothing(encoder_stream_));
   } else {

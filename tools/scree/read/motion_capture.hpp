@@ -42,6 +42,7 @@ private:
   std::optional<EncoderCapture> encoder_;
   xsens::ImuStream imu_stream_;
   encoder::EncoderStream encoder_stream_;
+  std::string no_imu_, no_encoder_, no_motion_;  // why there is none
 };
 
 }  // namespace scree::cli
