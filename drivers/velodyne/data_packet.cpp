@@ -107,12 +107,17 @@ Refusal check_data_packet(Bytes datagram, LidarModel model) {
   const bool hires = model == LidarModel::puck_hires;
   switch (product(datagram)) {
     case Product::puck_hires:
-      if (!hires) return Refusal::product;
+      if (!hires) return Refusal::puck_hires;
       break;
     case Product::vlp16:
     case Product::hdl32e:
-      if (hires) return Refusal::product;
+      if (hires) return Refusal::vlp16;
       break;
+    case Product::vlp32:
+    case Product::vlp32c:
+    case Product::velarray:
+    case Product::vls128:
+      return Refusal::unsupported;
     default:
       return Refusal::product;
   }

@@ -35,6 +35,7 @@ LidarStream::LidarStream(const LidarSettings& settings, OnSweep on_sweep, OnPack
 void LidarStream::hand_out(Sweep& sweep) {
   if (sweep.ends_turn) {
     ++counters_.sweeps;
+    if (sweep.is_standing) ++counters_.standing;
     counters_.dropped += sweep.dropped;
   } else {
     ++counters_.parts;

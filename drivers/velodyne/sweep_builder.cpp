@@ -29,7 +29,10 @@ bool SweepBuilder::passes_cut(float azimuth, std::int64_t shot_ns) {
   const float before = behind_cut_;
   behind_cut_ = azimuth >= cut_azimuth_ ? azimuth - cut_azimuth_ : azimuth - cut_azimuth_ + kFull;
   if (!open_) return false;
-  if (shot_ns - begin_ns_ > kLongestSweepNs) return true;
+  if (shot_ns - begin_ns_ > kLongestSweepNs) {
+    is_standing_ = last_shot_ns_ - begin_ns_ > kSlowestTurnNs;  // else packets are missing
+    return true;
+  }
   if (behind_cut_ > before - kStepBack) return false;
   // After a restart of the sensor the last cut lies ahead.
   const std::int64_t since_cut_ns = shot_ns - last_cut_ns_;
@@ -105,6 +108,7 @@ void SweepBuilder::finish() {
   open_ = false;
   sweep_.ends_turn = true;
   sweep_.is_whole = begins_at_cut_ && ends_at_cut_;
+  sweep_.is_standing = std::exchange(is_standing_, false);
   begins_at_cut_ = std::exchange(ends_at_cut_, false);
   hand_out(sweep_);
   sweep_.clear();

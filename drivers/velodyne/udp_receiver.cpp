@@ -68,7 +68,10 @@ Result<std::uint32_t> local_address(const std::string& text) {
 
 Result<std::uint32_t> sender_address(const std::string& text) {
   if (text.empty()) return 0;
-  if (const auto address = address_of(text)) return *address;
+  const auto address = address_of(text);
+  const bool is_host =
+      address && *address != INADDR_ANY && *address != INADDR_BROADCAST && !IN_MULTICAST(*address);
+  if (is_host) return *address;
   return fail("\"" + text +
               "\" is not the IPv4 address of a sender, as 192.168.1.201 is (no name, no port)");
 }

@@ -66,7 +66,7 @@ class DecodeTest(ProgramTest):
     def test_the_captures_own_configuration_is_used(self):
         self.write("scree.toml", '[lidar]\nmodel = "puck_hires"\n')
         said = self.scree("info", self.folder, code=1).stderr
-        self.assertIn("product byte of another model than lidar.model", said)
+        self.assertIn('of a VLP-16 or Puck LITE: set lidar.model = "vlp16"', said)
         self.scree("info", self.capture)
 
     def test_decode_lists_every_return_without_loss(self):

@@ -255,6 +255,27 @@ class DetectTest(ProgramTest):
         result = self.run_to_end(SCREE, "detect", self.path("dark.pcap"))
         self.assert_fails(result, "dark.pcap: nothing was looked at")
 
+    def test_a_lidar_that_does_not_turn_gives_no_list(self):
+        def standing(number):
+            packet = bytearray(data_packet(number))
+            for block in range(0, 1200, 100):
+                packet[block + 2 : block + 4] = b"\x10\x27"
+            return bytes(packet)
+
+        records = ((number * PACKET_NS, frame(standing(number), 2368)) for number in range(800))
+        write_pcap(self.path("standing.pcap"), records)
+        info = json.loads(self.done(SCREE, "info", self.path("standing.pcap"), "--json").stdout)
+        self.assertIn("the lidar did not turn in", info["standing"])
+        result = self.run_to_end(SCREE, "detect", self.path("standing.pcap"))
+        self.assertIn("the lidar did not turn in", result.stderr)
+        self.assertLessEqual(len(result.stdout.splitlines()), 1)
+
+    def test_packets_that_are_missing_are_said(self):
+        records = ((number * PACKET_NS, frame(data_packet(number), 2368)) for number in range(0, 800, 2))
+        write_pcap(self.path("lossy.pcap"), records)
+        result = self.run_to_end(SCREE, "detect", self.path("lossy.pcap"))
+        self.assertRegex(result.stderr, r"of \d+ packets of the lidar are missing \(50 %\)")
+
     def test_a_capture_that_has_lost_its_times_is_refused(self):
         records = ((10**18, frame(data_packet(number), 2368)) for number in range(400))
         write_pcap(self.path("timeless.pcap"), records)

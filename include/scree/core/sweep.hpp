@@ -32,6 +32,7 @@ struct Sweep {
   std::uint32_t packets = 0;          ///< data packets that gave it points
   std::uint32_t dropped = 0;          ///< points that did not fit
   bool is_whole = true;               ///< from its begin, unlike a lidar's first sweep, to its end
+  bool is_standing = false;           ///< the lidar did not turn, it looked in one direction
 
   Sweep() = default;
   explicit Sweep(std::size_t capacity)
@@ -57,6 +58,7 @@ struct Sweep {
     started_over = other.started_over;
     ends_turn = other.ends_turn;
     is_whole = other.is_whole;
+    is_standing = other.is_standing;
   }
   /// Moves all its times.
   void shift(std::int32_t by_ns) {

@@ -244,10 +244,14 @@ TEST(CheckDataPacket, NamesEveryReason) {
     EXPECT_EQ(check(PacketBuilder().mode(static_cast<ReturnMode>(byte))),
               mode_known ? Refusal::none : Refusal::return_mode);
     const PacketBuilder packet = PacketBuilder().product(static_cast<Product>(byte));
-    EXPECT_EQ(check(packet), byte == 0x21 || byte == 0x22 ? Refusal::none : Refusal::product);
+    const bool is_vlp16 = byte == 0x21 || byte == 0x22, is_hires = byte == 0x24;
+    const bool is_larger = byte == 0x23 || byte == 0x28 || byte == 0x31 || byte == 0xA1;
+    const Refusal other = is_larger ? Refusal::unsupported : Refusal::product;
+    EXPECT_EQ(check(packet), is_vlp16 ? Refusal::none : is_hires ? Refusal::puck_hires : other);
     EXPECT_EQ(check(packet, LidarModel::puck_lite), check(packet));
-    EXPECT_EQ(check(packet, LidarModel::puck_hires),
-              byte == 0x24 ? Refusal::none : Refusal::product);
+    EXPECT_EQ(check(packet, LidarModel::puck_hires), is_hires   ? Refusal::none
+                                                     : is_vlp16 ? Refusal::vlp16
+                                                                : other);
   }
 }
 

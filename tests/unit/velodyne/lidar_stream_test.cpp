@@ -67,6 +67,7 @@ TEST(LidarStream, ASensorThatStandsStillGivesSweepsByTime) {
     EXPECT_NEAR(static_cast<double>(sweep.end_ns - sweep.begin_ns), kLongestSweepNs, 1e5);
     EXPECT_FALSE(sweep.is_whole);
   }
+  EXPECT_GE(sensor.counters().standing, 8U);
   EXPECT_EQ(sensor.counters().dropped, 0U);
 }
 

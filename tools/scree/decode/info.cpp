@@ -52,8 +52,9 @@ struct SweepRate {
   std::int64_t first_end_ns = 0, last_end_ns = 0, points = 0;
 
   void see(const Sweep& sweep) {
-    if (sweeps++ == 0) first_end_ns = sweep.end_ns;
     points += static_cast<std::int64_t>(sweep.points.size());
+    if (sweep.is_standing) return;
+    if (sweeps++ == 0) first_end_ns = sweep.end_ns;
     // What is left over at the end of the capture is no turn.
     before_last_end_ns = last_end_ns;
     last_end_ns = sweep.end_ns;
@@ -143,6 +144,8 @@ Json describe(const LidarCapture& capture, const LidarStream& stream, const Swee
       {"firmware", velodyne::sentence(stream.firmware())},
       {"broken_off", capture.broken_off()},
       {"two_senders", capture.two_senders()},
+      {"missing", missing(counters)},
+      {"standing", standing(counters)},
   };
 }
 
@@ -190,7 +193,7 @@ void print_table(const Json& info) {
   }
   row("other frames", listed(info["frames"], "-"));
   for (const Json& mistake : info["settings"]) row("settings", mistake);
-  for (const char* key : {"firmware", "broken_off", "two_senders"}) {
+  for (const char* key : {"firmware", "broken_off", "two_senders", "missing", "standing"}) {
     if (const std::string note = info[key]; !note.empty()) row("note", note);
   }
 }

@@ -165,9 +165,10 @@ void detect_in_capture(const DetectOptions& options) {
   });
   writer.finish();
   if (sweeps == 0) {
-    throw Failure(
-        options.input.string() +
-        ": nothing was looked at, the lidar has not had a single return (is it covered?)");
+    throw Failure(options.input.string() + ": nothing was looked at, the lidar " +
+                  (capture.lidar().counters().standing > 0
+                       ? "does not turn"
+                       : "has not had a single return (is it covered?)"));
   }
   if (!grids) return;
   grids->finish();

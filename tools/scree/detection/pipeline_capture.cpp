@@ -61,7 +61,7 @@ void PipelineCapture::play(const std::function<void(const Sweep&)>& process) {
   });
   std::int64_t now_ns = 0;
   const auto on_sweep = [&](Sweep& sweep) {
-    if (!sweep.points.empty()) waiting.push(sweep, now_ns);
+    if (!sweep.points.empty() && !sweep.is_standing) waiting.push(sweep, now_ns);
   };
   stream_.emplace(settings_.lidar, on_sweep, velodyne::LidarStream::OnPacket(),
                   settings_.detect.lists_per_turn);

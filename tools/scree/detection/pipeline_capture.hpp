@@ -32,7 +32,8 @@ public:
 
   /// Plays all of it as the daemon would hear it, then says on stderr what was refused or lost.
   /// Throws Failure when no packet of the lidar was accepted.
-  /// @param process gets each sweep, and its parts where detect.lists_per_turn asks for them, when
+  /// @param process gets each sweep in which the lidar had returns and turned, and its parts where
+  /// detect.lists_per_turn asks for them, when
   ///   the samples of IMU and encoder that cover it have come, or it has waited for them for
   ///   map.wait
   void play(const std::function<void(const Sweep&)>& process);

@@ -19,10 +19,32 @@ using velodyne::LidarStream;
 /// The reason that most packets were refused for.
 std::string_view main_refusal(const LidarCounters& counters) {
   const auto most = std::max_element(counters.refused.begin(), counters.refused.end());
-  return kRefusalReasons[static_cast<std::size_t>(most - counters.refused.begin())];
+  const auto reason = static_cast<std::size_t>(most - counters.refused.begin());
+  if (reason == static_cast<std::size_t>(velodyne::Refusal::duplicate) &&
+      *most > counters.accepted) {
+    return "their time stamps stand still: does what wrote them know the sensor's?";
+  }
+  return kRefusalReasons[reason];
 }
 
 }  // namespace
+
+std::string missing(const LidarCounters& counters) {
+  constexpr double kMany = 0.05;  // of the packets
+  const std::uint64_t sent = counters.accepted + counters.lost;
+  const double share = static_cast<double>(counters.lost) / static_cast<double>(sent);
+  if (sent == 0 || share < kMany) return "";
+  return fmt::format(
+      "{} of {} packets of the lidar are missing ({:.0f} %): what they saw is not "
+      "looked at",
+      counters.lost, sent, 100 * share);
+}
+
+std::string standing(const LidarCounters& counters) {
+  if (counters.standing == 0) return "";
+  return fmt::format("the lidar did not turn in {} of its {} sweeps: they give no list",
+                     counters.standing, counters.sweeps);
+}
 
 Settings capture_settings(const std::filesystem::path& capture,
                           const std::filesystem::path& config) {
@@ -110,7 +132,7 @@ std::string LidarCapture::why_nothing(const LidarStream& stream) const {
       return fmt::format("{}: all {} packets are fragments, of which the others are missing", name_,
                          seen.fragments);
     }
-    return fmt::format("{}: no UDP packets in {} frames", name_, seen.other);
+    return fmt::format("{}: no UDP packets over IPv4 in {} frames", name_, seen.other);
   }
   const auto busiest = std::max_element(
       ports_.begin(), ports_.end(),
@@ -139,10 +161,12 @@ void report_capture(const LidarCapture& capture, const LidarStream& stream) {
   if (stream.counters().accepted == 0) throw Failure(capture.why_nothing(stream));
   note(capture.two_senders());
   note(velodyne::sentence(stream.firmware()));
-  if (const std::uint64_t refused = stream.counters().all_refused(); refused > 0) {
-    note(fmt::format("{} packets refused, most of them: {}", refused,
-                     main_refusal(stream.counters())));
+  const LidarCounters& counters = stream.counters();
+  if (const std::uint64_t refused = counters.all_refused(); refused > 0) {
+    note(fmt::format("{} packets refused, most of them: {}", refused, main_refusal(counters)));
   }
+  note(missing(counters));
+  note(standing(counters));
 }
 
 }  // namespace scree::cli

@@ -73,4 +73,9 @@ private:
 /// Failure when no packet was accepted.
 void report_capture(const LidarCapture& capture, const velodyne::LidarStream& stream);
 
+/// Sentences about many packets that are missing, and about a lidar that did not turn; empty where
+/// there is nothing to say.
+std::string missing(const velodyne::LidarCounters& counters);
+std::string standing(const velodyne::LidarCounters& counters);
+
 }  // namespace scree::cli

@@ -21,6 +21,7 @@ struct LidarCounters {
   std::array<std::uint64_t, 3> by_mode{};             ///< accepted: strongest, last, dual
   std::uint64_t lost = 0;                             ///< packets missing between accepted ones
   std::uint64_t sweeps = 0;                           ///< handed out, each the end of a turn
+  std::uint64_t standing = 0;                         ///< sweeps during which it did not turn
   std::uint64_t parts = 0;                            ///< handed out before the end of their turn
   std::uint64_t dropped = 0;                          ///< points beyond a sweep's capacity
   std::uint64_t device_restarts = 0, host_steps = 0;  ///< see DeviceClock

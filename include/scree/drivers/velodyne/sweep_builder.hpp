@@ -12,6 +12,9 @@ namespace scree::velodyne {
 /// slowest that can be set.
 inline constexpr std::int64_t kLongestSweepNs = 220'000'000;
 
+/// In this time a sensor that turns has turned once.
+inline constexpr std::int64_t kSlowestTurnNs = 210'000'000;
+
 /// Points of the largest sweep: every shot of that time with two returns.
 inline constexpr std::size_t kSweepCapacity =
     static_cast<std::size_t>(kLongestSweepNs / kFiringNs + 1) * kLasers * 2;
@@ -63,7 +66,7 @@ private:
   float behind_cut_ = 0;  ///< how far the last shot lay behind the cut; hundredths of a degree
   bool open_ = false, was_cut_ = false;
   bool started_over_ = false;
-  bool begins_at_cut_ = false, ends_at_cut_ = false;
+  bool begins_at_cut_ = false, ends_at_cut_ = false, is_standing_ = false;
 };
 
 }  // namespace scree::velodyne

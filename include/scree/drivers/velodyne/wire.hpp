@@ -49,7 +49,11 @@ enum class ReturnMode : std::uint8_t { strongest = 0x37, last = 0x38, dual = 0x3
 enum class Product : std::uint8_t {
   hdl32e = 0x21,  ///< early firmware of the VLP-16 writes it too
   vlp16 = 0x22,   ///< and Puck LITE
-  puck_hires = 0x24
+  puck_hires = 0x24,
+  vlp32 = 0x23,
+  vlp32c = 0x28,
+  velarray = 0x31,
+  vls128 = 0xA1
 };
 
 // A position packet (section 9.3.2).
