@@ -1,9 +1,12 @@
 #include "black_box.hpp"
 
+#include <fcntl.h>
 #include <spdlog/fmt/chrono.h>
 #include <spdlog/fmt/fmt.h>
+#include <sys/file.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <system_error>
 
@@ -72,6 +75,11 @@ Result<BlackBox> BlackBox::open(const BlackBoxSettings& settings, std::int64_t n
   if (failed) {
     return fail(fmt::format("blackbox.folder: {} cannot be made: {}", box.ring_.string(),
                             failed.message()));
+  }
+  box.lock_ = Descriptor(::open(box.ring_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (flock(box.lock_.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    return fail(fmt::format("blackbox.folder: another screed writes in {}: give each a folder",
+                            box.folder_.string()));
   }
   if (const auto closed = box.close_leftovers(now_ns); !closed) {
     return tl::make_unexpected(closed.error());

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "scree/config/settings.hpp"
+#include "scree/core/descriptor.hpp"
 #include "scree/core/result.hpp"
 
 namespace scree {
@@ -55,6 +56,7 @@ private:
   void fail_with(const std::string& what);
 
   BlackBoxSettings settings_;
+  Descriptor lock_;  // of the ring, as long as this one writes
   std::filesystem::path folder_, ring_;
   std::deque<Part> parts_;  // the last one is being written
   std::ofstream file_;

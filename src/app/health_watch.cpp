@@ -234,6 +234,10 @@ void HealthWatch::log_losses(std::int64_t now_ns, const LidarStatus& lidar,
        "turns of the IMU's yaw that its angular rate did not know of: they were not believed"},
       {detector.not_sent,
        "messages that LCM did not take: is the network up, and does the server of lcm.url read?"},
+      {detector.drops.obstacles + detector.drops.tracks,
+       "obstacles found no room, and the farthest are left out: raise memory.obstacles"},
+      {detector.drops.map_points, "points found no room in the map: raise memory.map_voxels"},
+      {detector.drops.points, "points of sweeps found no room: raise memory.sweep_points"},
   }};
   for (std::size_t i = 0; i < kLosses; ++i) {
     losses_[i].update(now_ns, losses[i].count, losses[i].what, log_);

@@ -11,9 +11,9 @@
 
 #include "keep_up.hpp"
 #include "log_lines.hpp"
+#include "scree/app/detection_report.hpp"
 #include "scree/config/settings.hpp"
 #include "scree/core/nanoseconds.hpp"
-#include "scree/motion/setup_report.hpp"
 #include "sensor_status.hpp"
 #include "sensor_watch.hpp"
 
@@ -28,6 +28,7 @@ struct DetectorStatus {
   std::uint64_t slips = 0, heading_resets = 0;  ///< see MotionReport
   std::uint64_t not_sent = 0;                   ///< messages that LCM did not take in time
   SetupReport setup{};                          ///< see DetectionReport
+  DropCounts drops{};                           ///< the same
 };
 
 /// Decides from what the threads report whether the robot sees, and what a person should read in
@@ -97,7 +98,7 @@ private:
   std::int64_t logged_at_ns_ = 0;
   bool logged_datagram_ = false, logged_packet_ = false;
   bool logged_pulse_ = false, logged_pps_lost_ = false, logged_no_pulse_ = false;
-  static constexpr std::size_t kLosses = 5;
+  static constexpr std::size_t kLosses = 8;
   std::array<GrowthLog, kLosses> losses_;
 };
 

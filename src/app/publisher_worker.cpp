@@ -104,7 +104,8 @@ void PublisherWorker::update_health(std::int64_t now_ns) {
                                 statistics_.motion().slips,
                                 statistics_.motion().heading_resets,
                                 sent.failed + sent.health_failed,
-                                statistics_.setup()};
+                                statistics_.setup(),
+                                statistics_.drops()};
   bool has_changed =
       watch_.update(now_ns, status_.lidar, status_.imu, status_.encoder, detector, health_);
   has_changed = drive_outputs(now_ns) || has_changed;

@@ -17,6 +17,12 @@
 namespace scree {
 namespace {
 
+/// LCM knows urls that lead to no other process.
+Result<void> check_planner_url(const std::string& url) {
+  if (!url.starts_with("memq://") && !url.starts_with("file://")) return check_lcm_url(url);
+  return fail("at the LCM url " + url + " no planner hears: udpm://239.255.76.67:7667?ttl=0");
+}
+
 std::vector<KeyMistake> unusable(const Configuration& configuration) {
   const Settings& settings = configuration.settings;
   std::vector<KeyMistake> found;
@@ -30,7 +36,7 @@ std::vector<KeyMistake> unusable(const Configuration& configuration) {
   judge("gpio.pps", gpio::check_name(settings.gpio.pps));
   judge("gpio.stop", gpio::check_name(settings.gpio.stop));
   judge("gpio.heartbeat", gpio::check_name(settings.gpio.heartbeat));
-  judge("lcm.url", check_lcm_url(settings.lcm.url));
+  judge("lcm.url", check_planner_url(settings.lcm.url));
   return found;
 }
 

@@ -3,6 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <string_view>
+#include <utility>
 
 namespace scree {
 namespace {
@@ -20,6 +21,26 @@ void find(const DetectSettings& detect, std::string_view table, std::vector<Cont
   }
 }
 
+/// The stop zone is of no use where the lidar is not listened to.
+void find_blind_stop_zone(const Settings& settings, std::vector<Contradiction>& found) {
+  constexpr double kLeast = 0.3;  // metres of the zone that are left
+  const double length = settings.stop.length;
+  if (settings.lidar.max_range < length) {
+    found.push_back({{"lidar.max_range", "stop.length"},
+                     "lidar.max_range ends before the stop zone does (stop.length)"});
+  }
+  if (settings.lidar.min_range > length) {
+    found.push_back({{"lidar.min_range", "stop.length"},
+                     "lidar.min_range begins behind the stop zone (stop.length)"});
+  }
+  for (const BodyBox& box : settings.robot.body) {
+    const bool is_ahead = box.low.y() < 0 && box.high.y() > 0 && box.low.z() < 1;
+    if (!is_ahead || box.high.x() < length - kLeast || box.low.x() > kLeast) continue;
+    found.push_back({{"robot.body", "stop.length"},
+                     "a box of robot.body covers the stop zone: nothing would be seen in it"});
+  }
+}
+
 }  // namespace
 
 std::vector<Contradiction> contradictions(const Settings& settings) {
@@ -28,6 +49,7 @@ std::vector<Contradiction> contradictions(const Settings& settings) {
     found.push_back(
         {{"lidar.min_range", "lidar.max_range"}, "lidar.min_range must be below lidar.max_range"});
   }
+  find_blind_stop_zone(settings, found);
   if (settings.lidar.port == settings.lidar.position_port) {
     found.push_back(
         {{"lidar.port", "lidar.position_port"}, "lidar.port and lidar.position_port must differ"});
@@ -53,6 +75,15 @@ std::vector<Contradiction> contradictions(const Settings& settings) {
   if (!gpio.stop.empty() && gpio.stop == gpio.heartbeat) {
     found.push_back(
         {{"gpio.stop", "gpio.heartbeat"}, "gpio.stop and gpio.heartbeat must be different lines"});
+  }
+  for (const auto& [key, path] : {std::pair{"blackbox.folder", settings.blackbox.folder},
+                                  {"metrics.file", settings.metrics.file}}) {
+    if (!path.empty() && !path.starts_with('/')) {
+      found.push_back({{key},
+                       fmt::format("{} must begin with / : nobody knows where screed is "
+                                   "started",
+                                   key)});
+    }
   }
   const int lists = settings.detect.lists_per_turn;
   if (lists != 1 && lists != 2 && lists != 4 && lists != 8) {

@@ -5,6 +5,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
@@ -21,20 +22,41 @@ std::string no_url(const std::string& url) {
          "(224.0.0.0 to 239.255.255.255) and a port";
 }
 
-/// LCM takes what is no number for 0, and lets the kernel refuse what is too large.
-bool has_possible_ttl(std::string_view url) {
-  constexpr std::string_view kKey = "ttl=";
+template <class Number>
+bool is_number(std::string_view text, Number least) {
+  Number value{};
+  const char* const last = text.data() + text.size();
+  const auto [end, error] = std::from_chars(text.data(), last, value);
+  return error == std::errc{} && end == last && value >= least;
+}
+
+/// What is wrong with the options of a url; empty: nothing. LCM takes what is no number for 0, and
+/// passes over what it does not know.
+std::string wrong_option(std::string_view url) {
   std::size_t at = url.find('?');
   while (at != std::string_view::npos) {
     const std::string_view option = url.substr(at + 1, url.find('&', at + 1) - at - 1);
     at = url.find('&', at + 1);
-    if (!option.starts_with(kKey)) continue;
-    const std::string_view value = option.substr(kKey.size());
-    std::uint8_t ttl = 0;
-    const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), ttl);
-    if (error != std::errc{} || end != value.data() + value.size()) return false;
+    const std::string_view key = option.substr(0, option.find('='));
+    const std::string_view value = option.substr(std::min(key.size() + 1, option.size()));
+    if (key == "ttl") {
+      if (!is_number<std::uint8_t>(value, 0)) return "the ttl of the LCM url must be 0 to 255";
+    } else if (key == "recv_buf_size") {
+      if (!is_number<std::int32_t>(value, 1)) return "recv_buf_size of the LCM url must be bytes";
+    } else if (!option.empty()) {
+      return "the LCM url has an option \"" + std::string(key) +
+             "\", and takes ttl and recv_buf_size";
+    }
   }
-  return true;
+  return "";
+}
+
+/// Whether tcpq://HOST:PORT has a port that there can be; without one it has LCM's.
+bool has_possible_port(std::string_view url) {
+  const std::string_view server = url.substr(url.find("//") + 2);
+  const std::size_t colon = server.find(':');
+  return colon == std::string_view::npos ||
+         is_number<std::uint16_t>(server.substr(colon + 1, server.find('?') - colon - 1), 1);
 }
 
 Result<sockaddr_in> group_of(const std::string& url) {
@@ -62,8 +84,13 @@ Result<sockaddr_in> group_of(const std::string& url) {
 
 Result<void> check_lcm_url(const std::string& url) {
   if (is_multicast(url)) {
-    if (!has_possible_ttl(url)) return fail("the ttl of the LCM url " + url + " must be 0 to 255");
+    if (const std::string wrong = wrong_option(url); !wrong.empty()) {
+      return fail(wrong + " (" + url + ")");
+    }
     return group_of(url).map([](const sockaddr_in&) {});
+  }
+  if (url.starts_with("tcpq://") && !has_possible_port(url)) {
+    return fail("the port of the LCM url " + url + " must be 1 to 65535");
   }
   for (const std::string_view other : {"tcpq://", "mpudpm://", "memq://", "file://"}) {
     if (url.starts_with(other)) return {};

@@ -146,10 +146,20 @@ class CommandLineTest(ProgramTest):
             other = self.write("moved.jsonl", json.dumps(moved) + "\n")
             self.scree("picture", capture, other, "--out", self.path("p.png"), "--force", code=code)
 
+    def test_a_picture_needs_points(self):
+        lists = self.path("lists.jsonl")
+        self.scree("detect", self.simulate(1), "--out", lists)
+        header = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 0\nHEIGHT 1\nPOINTS 0\nDATA ascii\n"
+        empty = self.write("empty.pcd", "# .PCD v0.7\n" + header)
+        said = self.scree("picture", empty, lists, "--out", self.path("p.png"), code=1).stderr
+        self.assertIn("empty.pcd: holds no points", said)
+
     def test_the_nearest_command_and_option_are_named(self):
         self.assertIn('no command "detct"; did you mean "detect"?', self.scree("detct", code=2).stderr)
         said = self.scree("detect", "/tmp", "--otu", "x", code=2).stderr
         self.assertIn('detect has no option "--otu"; did you mean "--out"?', said)
+        said = self.scree("--hepl", code=2).stderr
+        self.assertIn('scree has no option "--hepl"; did you mean "--help"?', said)
 
     def test_words_of_a_choice_stand_in_help_and_errors(self):
         for command, option, word in [("train", "--profile", "sweep"), ("train", "--counts", "log1p"),

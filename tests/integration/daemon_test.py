@@ -128,11 +128,12 @@ class DaemonTest(ProgramTest):
         self.assert_fails(result, 'gpio.stop = "nochip:4"', "no GPIO chip nochip")
 
     def test_an_unusable_lcm_url_is_explained(self):
-        config = self.write("wrong.toml", f'[lidar]\nport = {self.port}\nposition_port = '
-                            f'{self.position_port}\n[detect.sweep]\nnetwork = "network.txt"\n'
-                            '[lcm]\nurl = "udpm://127.0.0.1:7667"\n')  # fmt: skip
-        result = self.run_to_end(SCREED, "--config", config)
-        self.assert_fails(result, "udpm://127.0.0.1:7667", "multicast address")
+        for url, why in [("udpm://127.0.0.1:7667", "multicast address"),
+                         ("memq://", "no planner hears"), ("file:///tmp/log", "no planner hears")]:  # fmt: skip
+            config = self.write("wrong.toml", f'[lidar]\nport = {self.port}\nposition_port = '
+                                f'{self.position_port}\n[detect.sweep]\nnetwork = "network.txt"\n'
+                                f'[lcm]\nurl = "{url}"\n')  # fmt: skip
+            self.assert_fails(self.run_to_end(SCREED, "--config", config), url, why)
 
     def test_wrong_usage_ends_with_2(self):
         self.assertEqual(self.run_to_end(SCREED, "--colour").returncode, 2)

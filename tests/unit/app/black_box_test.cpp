@@ -103,12 +103,14 @@ TEST_F(BlackBoxTest, WhatACrashLeftIsClosedAtTheNextStart) {
     feed(box, 0, 5);
   }
   fs::remove(folder_ / "never");
-  BlackBox box = open(kBegin + 9 * kSecond);
-  ASSERT_THAT(logs(), ElementsAre("2020-09-13T12-26-49.000_crash.lcm"));
-  EXPECT_THAT(seconds_in(logs()[0]), ElementsAre(0, 1, 2, 3, 4));
-  feed(box, 5, 6);
-  box.close("end", kBegin + 10 * kSecond);
-  EXPECT_THAT(seconds_in(logs()[1]), ElementsAre(5));
+  {
+    BlackBox box = open(kBegin + 9 * kSecond);
+    ASSERT_THAT(logs(), ElementsAre("2020-09-13T12-26-49.000_crash.lcm"));
+    EXPECT_THAT(seconds_in(logs()[0]), ElementsAre(0, 1, 2, 3, 4));
+    feed(box, 5, 6);
+    box.close("end", kBegin + 10 * kSecond);
+    EXPECT_THAT(seconds_in(logs()[1]), ElementsAre(5));
+  }
   const BlackBox again = open(kBegin + 11 * kSecond);
   EXPECT_EQ(logs().size(), 2U);
 }
@@ -172,6 +174,15 @@ TEST_F(BlackBoxTest, AFolderThatCannotBeIsRefused) {
   const auto box = BlackBox::open(settings_, kBegin);
   ASSERT_FALSE(box);
   EXPECT_THAT(box.error().message, ::testing::HasSubstr("blackbox.folder"));
+}
+
+TEST_F(BlackBoxTest, AnotherOneDoesNotWriteInTheSameFolder) {
+  BlackBox box = open();
+  feed(box, 0, 5);
+  const auto second = BlackBox::open(settings_, kBegin + 5 * kSecond);
+  ASSERT_FALSE(second);
+  EXPECT_THAT(second.error().message, ::testing::HasSubstr("another screed"));
+  EXPECT_THAT(logs(), ::testing::IsEmpty()) << "the first has not crashed";
 }
 
 TEST_F(BlackBoxTest, AFullDiskIsSaidAndComesBack) {

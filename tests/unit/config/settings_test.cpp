@@ -160,6 +160,15 @@ TEST(Settings, ContradictionsOfTheEncoderAreOneSentence) {
   EXPECT_EQ(error_of("[encoder]\ndbc = \"a.dbc\"\nsignal = \"A.B\"\nscale = 1\n"), "no error");
 }
 
+TEST(Settings, AStopZoneThatTheLidarIsNotListenedToInIsAnError) {
+  EXPECT_THAT(error_of("[lidar]\nmax_range = 1.5\n"), HasSubstr("ends before the stop zone"));
+  EXPECT_THAT(error_of("[lidar]\nmin_range = 9\n"), HasSubstr("begins behind the stop zone"));
+  EXPECT_THAT(error_of("[robot]\nbody = [[[0.2, -6, -3], [9, 6, 3]]]\n"),
+              HasSubstr("covers the stop zone"));
+  EXPECT_EQ(error_of("[robot]\nbody = [[[-1, -0.5, 0], [0.6, 0.5, 1]]]\n"), "no error");
+  EXPECT_EQ(error_of("[lidar]\nmax_range = 1.5\n[stop]\nlength = 1\n"), "no error");
+}
+
 TEST(Settings, MissingFileIsOneSentence) {
   const auto settings = load_settings("/nonexistent/scree.toml");
   ASSERT_FALSE(settings);

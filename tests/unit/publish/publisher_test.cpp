@@ -241,7 +241,20 @@ TEST(Multicast, TheTtlIsANumberOfHops) {
     const std::string url = group + options;
     const auto checked = check_lcm_url(url);
     ASSERT_FALSE(checked) << url;
-    EXPECT_EQ(checked.error().message, "the ttl of the LCM url " + url + " must be 0 to 255");
+    EXPECT_EQ(checked.error().message, "the ttl of the LCM url must be 0 to 255 (" + url + ")");
+  }
+}
+
+TEST(Multicast, OptionsThatLcmWouldPassOverAreRefused) {
+  const std::string group = "udpm://239.1.2.3:7667?";
+  for (const char* options : {"tll=1", "recv_buf_size=-5", "recv_buf_size=abc", "ttl=0&x"}) {
+    EXPECT_FALSE(check_lcm_url(group + options)) << options;
+  }
+  for (const char* url : {"tcpq://", "tcpq://robot", "tcpq://:7700", "tcpq://robot:7700?x"}) {
+    EXPECT_TRUE(check_lcm_url(url)) << url;
+  }
+  for (const char* url : {"tcpq://robot:", "tcpq://robot:99999", "tcpq://robot:0"}) {
+    EXPECT_FALSE(check_lcm_url(url)) << url;
   }
 }
 

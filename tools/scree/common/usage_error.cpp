@@ -37,8 +37,8 @@ std::string unknown_word(const CLI::App& app, const CLI::ParseError& error, int 
     return unknown_command(app, first);
   }
   const bool is_extra = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError);
-  if (!is_extra || app.get_subcommands().empty()) return "";
-  const CLI::App& command = *app.get_subcommands().front();
+  if (!is_extra && !app.get_subcommands().empty()) return "";
+  const CLI::App& command = app.get_subcommands().empty() ? app : *app.get_subcommands().front();
   for (const std::string& word : command.remaining()) {
     if (word.starts_with("--")) return unknown_option(command, word);
   }

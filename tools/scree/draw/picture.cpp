@@ -71,6 +71,7 @@ Ground ground_of_capture(const PictureOptions& options) {
 Ground ground_of_cloud(const PictureOptions& options) {
   auto cloud = read_pcd(options.input);
   if (!cloud) throw Failure(cloud.error().message);
+  if (cloud->empty()) throw Failure(options.input + ": holds no points");
   const Eigen::Vector3d origin = cloud->origin;
   return {std::move(*cloud), "one point cloud", 0, origin};
 }

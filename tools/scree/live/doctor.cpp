@@ -42,7 +42,9 @@ public:
     read_config();
     find_screed();
     Listening listening(settings_, is_running());
-    listening.listen(options_.seconds);
+    // Health comes once a second.
+    constexpr double kHealth = 1.3;
+    listening.listen(screed_ ? std::max(options_.seconds, kHealth) : options_.seconds);
     check_daemon(listening);
     check_multicast();
     check_lidar(listening);
