@@ -66,7 +66,9 @@ class RecordTest(ProgramTest):
         info = self.done(SCREE, "info", self.recording)
         self.assertIn("from 127.0.0.1", info.stdout)
         lists = self.done(SCREE, "detect", self.recording, "--out", self.path("lists.jsonl"))
-        self.assertNotIn("IMU", lists.stderr)
+        # A computer that has too much to do hears the samples late, and records so.
+        said = [line for line in lists.stderr.splitlines() if "came later than map.wait" not in line]
+        self.assertNotIn("IMU", "\n".join(said))
 
     def test_frames_of_the_can_bus_are_recorded(self):
         can, reason = can_socket("vcan0")
