@@ -150,15 +150,17 @@ void take_range(Scanner& scanner, DbcSignal& signal) {
   }
 }
 
-/// Whether the name of a value says that there is none.
+/// Whether the name of a value says that there is none: "SNA", "Sensor error", not "no error".
 bool names_no_value(std::string_view name) {
   const std::string label = lower_case(name);
-  constexpr std::array kWhole = {"sna", "na", "n/a"};
+  constexpr std::array kWhole = {"sna", "na", "n/a", "fault"};
   constexpr std::array kPart = {"not avail", "notavail", "not_avail", "unavail",
-                                "invalid",   "error",    "undefined", "fault"};
+                                "invalid",   "error",    "undefined"};
+  const bool is_denied = label.starts_with("no ") || label.starts_with("no_");
   return std::ranges::find(kWhole, label) != kWhole.end() ||
-         std::ranges::any_of(
-             kPart, [&](const char* part) { return label.find(part) != std::string::npos; });
+         (!is_denied && std::ranges::any_of(kPart, [&](const char* part) {
+           return label.find(part) != std::string::npos;
+         }));
 }
 
 bool fits_a_frame(const DbcSignal& signal) {

@@ -110,7 +110,8 @@ TEST(Dbc, ReadsRangeValuesAndSelector) {
       "BO_ 288 W: 8 X\n SG_ Mode M : 0|4@1+ (1,0) [0|15] \"\" X\n"
       " SG_ V m3 : 8|8@1+ (0.01,0) [0|2.5] \"m/s\" X\n SG_ U m4 : 8|8@1+ (1,0) [0|x] \"\" X\n"
       " SG_ R m5 : 8|8@1+ (1,0) [0|1] \"\" X\n"
-      "VAL_ 288 V 255 \"SNA\" 254 \"Sensor error\" 3 \"fast\" ;\nVAL_ 288 U 1 \"NA\" ;\n"
+      "VAL_ 288 V 255 \"SNA\" 254 \"Sensor error\" 3 \"default\" 4 \"no error\" ;\nVAL_ 288 U 1 "
+      "\"NA\" ;\n"
       "SG_MUL_VAL_ 288 V Mode 3-3;\nSG_MUL_VAL_ 288 R Mode 5-5, 7-9;\n";
   const auto signal = find_signal(kMore, "W.V", "robot.dbc");
   ASSERT_TRUE(signal) << signal.error().message;
