@@ -218,7 +218,7 @@ private:
       found_->fault = "is multiplexed by more than one selector that is in every frame";
       return;
     }
-    found_->signal.selector = {selectors_[0].signal, value};
+    found_->signal.selector = {selectors_[0].signal.place(), value};
   }
   void make_float(const FloatLine& line) {
     DbcSignal& signal = found_->signal;
@@ -277,7 +277,7 @@ Result<EncoderSettings> with_dbc(const EncoderSettings& settings,
   EncoderSettings filled = settings;
   filled.can_id = signal->id;
   filled.is_extended = signal->is_extended;
-  static_cast<SignalPlace&>(filled) = *signal;
+  static_cast<SignalPlace&>(filled) = signal->place();
   filled.is_signed = signal->is_signed;
   filled.factor = signal->factor;
   filled.offset = signal->offset;

@@ -66,8 +66,8 @@ GroundFinder::Tilt GroundFinder::main_tilt() const {
     if (std::isnan(seen_[cell])) continue;
     ++seen;
     if (patch_[cell] != number) continue;
-    const Eigen::Vector3d at(static_cast<double>(cell % columns_),
-                             static_cast<double>(cell / columns_), 1);
+    const std::size_t row = cell / columns_, column = cell % columns_;
+    const Eigen::Vector3d at(static_cast<double>(column), static_cast<double>(row), 1);
     squares += at * at.transpose();
     products += at * static_cast<double>(seen_[cell]);
   }

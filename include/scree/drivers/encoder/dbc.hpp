@@ -16,6 +16,8 @@ namespace scree::encoder {
 
 /// One signal of one message.
 struct DbcSignal : SignalPlace {
+  SignalPlace place() const { return {start_bit, length, byte_order}; }
+
   std::uint32_t id = 0;  ///< of the frame
   bool is_extended = false;
   bool is_signed = false;
