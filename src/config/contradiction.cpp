@@ -23,8 +23,10 @@ void find(const DetectSettings& detect, std::string_view table, std::vector<Cont
 
 /// The stop zone is of no use where the lidar is not listened to.
 void find_blind_stop_zone(const Settings& settings, std::vector<Contradiction>& found) {
-  constexpr double kLeast = 0.3;  // metres of the zone that are left
+  constexpr double kLeast = 0.3;   // metres of the zone that are left
+  constexpr double kNoZone = 0.5;  // metres: a zone as short is how one does without
   const double length = settings.stop.length;
+  if (length <= kNoZone) return;
   if (settings.lidar.max_range < length) {
     found.push_back({{"lidar.max_range", "stop.length"},
                      "lidar.max_range ends before the stop zone does (stop.length)"});

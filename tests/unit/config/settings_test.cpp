@@ -167,6 +167,7 @@ TEST(Settings, AStopZoneThatTheLidarIsNotListenedToInIsAnError) {
               HasSubstr("covers the stop zone"));
   EXPECT_EQ(error_of("[robot]\nbody = [[[-1, -0.5, 0], [0.6, 0.5, 1]]]\n"), "no error");
   EXPECT_EQ(error_of("[lidar]\nmax_range = 1.5\n[stop]\nlength = 1\n"), "no error");
+  EXPECT_EQ(error_of("[stop]\nlength = 0.1\n"), "no error") << "how one does without a zone";
 }
 
 TEST(Settings, MissingFileIsOneSentence) {
