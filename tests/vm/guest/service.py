@@ -73,7 +73,7 @@ def hears_pulses(robot):
 def reloads(robot):
     """a wider stop zone takes effect at once: there is an obstacle in it"""
     process, mark = show("MainPID"), journal.mark()
-    robot.configure(stop="length = 50.0\nwidth = 50.0\nhold = 0.0", voxel=0.24)
+    robot.configure(stop="length = 5.5\nwidth = 50.0\nhold = 0.0", voxel=0.24)
     run("systemctl reload screed")
     journal.says("changed are stop.length, stop.width", mark)
     journal.says("needs a restart: map.voxel", mark)
