@@ -73,14 +73,16 @@ constexpr std::array kTurnUnits = {
     TurnUnit{"rev/s", 1},        TurnUnit{"rad/s", 1 / (2 * std::numbers::pi)},
     TurnUnit{"deg/s", 1.0 / 360}};
 
+std::string wrong_kind(const EncoderSettings& settings, std::string_view unit) {
+  return fmt::format("encoder.kind is {}, but the unit of {} is {}", name_of(settings.kind),
+                     settings.signal, unit);
+}
+
 /// Why a rate of turn cannot be meant; empty when it can.
 std::string contradiction(const EncoderSettings& settings, const TurnUnit& unit,
                           std::string_view written) {
   constexpr double kLargestWheel = 8;  // metres around
-  if (settings.kind != EncoderKind::speed) {
-    return fmt::format("encoder.kind is {}, but the unit of {} is {}", name_of(settings.kind),
-                       settings.signal, written);
-  }
+  if (settings.kind != EncoderKind::speed) return wrong_kind(settings, written);
   const double around = std::abs(settings.scale) / unit.rate;
   if (around <= kLargestWheel) return {};
   return fmt::format(
@@ -103,10 +105,7 @@ std::string contradiction(const EncoderSettings& settings, const DbcSignal& sign
   if (turn != kTurnUnits.end()) return contradiction(settings, *turn, unit);
   for (const Unit& known : kUnits) {
     if (normal != known.name) continue;
-    if (settings.kind != known.kind) {
-      return fmt::format("encoder.kind is {}, but the unit of {} is {}", name_of(settings.kind),
-                         settings.signal, unit);
-    }
+    if (settings.kind != known.kind) return wrong_kind(settings, unit);
     const double scale = std::abs(settings.scale), ratio = scale / known.scale;
     const bool is_forgotten = scale == 1 && known.scale != 1;
     if (is_forgotten || ratio > 2 || ratio < 0.5) {
