@@ -81,6 +81,30 @@ class ViewTest(LiveDaemonTest):
         page.wait_for("document.getElementById('state').textContent.includes('stale')")
         self.assertEqual(page.complaints, [])
 
+    def test_ground_is_shaded_where_it_changes_as_if_all_were(self):
+        page = Page(self, self.view())
+        differing, painted = page.of(
+            """(() => {
+            const live = new LiveGround(0.25, 10);
+            let seed = 7;
+            const any = (most) => (seed = (seed * 48271) % 2147483647) % most;
+            for (let i = 0; i < 40; ++i) {
+              const [columns, rows] = [20 + any(9), 20 + any(9)];
+              const state = Uint8Array.from({ length: columns * rows }, () => any(4));
+              const p = [i / 4, -i / 5, 0.1];
+              live.add({ columns, rows, state, ground: Array.from(state, () => any(100) - 50),
+                         pose: { p }, origin: [p[0] - any(12), p[1] - any(12)] });
+            }
+            const pixels = ({ image }) => image.getContext('2d').getImageData(0, 0, live.size, live.size).data;
+            const { cell, size, heights } = live;
+            const whole = pixels(drawnGround({ x: 0, y: 0, cell, columns: size, rows: size, heights }));
+            const parts = pixels(live.drawn());
+            return [parts.filter((value, i) => value !== whole[i]).length, whole.filter((value) => value > 0).length];
+            })()"""
+        )
+        self.assertEqual(differing, 0)
+        self.assertGreater(painted, 4000)
+
     def test_only_who_may_gets_in(self):
         url = self.view()
         self.assertTrue(url.startswith("http://127.0.0.1:"))

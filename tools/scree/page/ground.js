@@ -29,9 +29,12 @@ function smoothed(heights, columns, rows, radius) {
   return means;
 }
 
+/** How many cells away a height has a part in the brightness. */
+const reachOfShade = (cell) => Math.max(1, Math.round(0.8 / cell));
+
 /** Brightness of each cell, 0 to 1; NaN where nothing is known. */
 function hillshade(heights, columns, rows, cell) {
-  const around = smoothed(heights, columns, rows, Math.max(1, Math.round(0.8 / cell)));
+  const around = smoothed(heights, columns, rows, reachOfShade(cell));
   const bright = new Float32Array(columns * rows).fill(NaN);
   for (let row = 0; row < rows; ++row) {
     const [up, down] = [row + 1 < rows ? columns : 0, row > 0 ? columns : 0];
@@ -51,12 +54,8 @@ function hillshade(heights, columns, rows, cell) {
 }
 
 /** A picture of brightness, x up and y to the left. */
-function groundImage(bright, columns, rows) {
-  const canvas = document.createElement('canvas');
-  canvas.width = rows;
-  canvas.height = columns;
-  const context = canvas.getContext('2d');
-  const image = context.createImageData(rows, columns);
+function pictureOf(bright, columns, rows) {
+  const image = new ImageData(rows, columns);
   const pixels = new Uint32Array(image.data.buffer);
   for (let row = 0; row < rows; ++row) {
     for (let column = 0; column < columns; ++column) {
@@ -66,15 +65,17 @@ function groundImage(bright, columns, rows) {
       pixels[(columns - 1 - column) * rows + rows - 1 - row] = 0xff000000 | grey << 16 | grey << 8 | grey;
     }
   }
-  context.putImageData(image, 0, 0);
-  return canvas;
+  return image;
 }
+
+const newCanvas = (width, height) => Object.assign(document.createElement('canvas'), { width, height });
 
 /** The ground of a report, ready to be drawn. */
 function drawnGround(ground) {
   const { x, y, cell, columns, rows, heights } = ground;
-  const bright = hillshade(heights, columns, rows, cell);
-  return { x, y, width: columns * cell, height: rows * cell, image: groundImage(bright, columns, rows) };
+  const image = newCanvas(rows, columns);
+  image.getContext('2d').putImageData(pictureOf(hillshade(heights, columns, rows, cell), columns, rows), 0, 0);
+  return { x, y, width: columns * cell, height: rows * cell, image };
 }
 
 /** The ground that grids tell while they come: as many metres around the robot as `reach`. */
@@ -83,6 +84,7 @@ class LiveGround {
     this.cell = cell;
     this.size = Math.round(2 * reach / cell);
     this.heights = null;
+    this.image = newCanvas(this.size, this.size);
   }
 
   /** Moves the area so that the robot is well inside; what is known stays. */
@@ -102,24 +104,43 @@ class LiveGround {
       }
     }
     [this.heights, this.column, this.row] = [heights, column, row];
+    this.shade(0, 0, this.size, this.size);
   }
 
   add(grid) {
     this.center(grid.pose.p[0], grid.pose.p[1]);
-    const [column, row] = [Math.round(grid.origin[0] / this.cell), Math.round(grid.origin[1] / this.cell)];
+    const { size, heights } = this;
+    const column = Math.round(grid.origin[0] / this.cell) - this.column;
+    const row = Math.round(grid.origin[1] / this.cell) - this.row;
     let next = 0;
     grid.state.forEach((state, i) => {
       if (state === 0) return;
       const height = grid.pose.p[2] + grid.ground[next++] / 100;
-      const [c, r] = [column + i % grid.columns - this.column, row + Math.floor(i / grid.columns) - this.row];
-      if (c >= 0 && c < this.size && r >= 0 && r < this.size) this.heights[r * this.size + c] = height;
+      const [c, r] = [column + i % grid.columns, row + Math.floor(i / grid.columns)];
+      if (c >= 0 && c < size && r >= 0 && r < size) heights[r * size + c] = height;
     });
+    this.shade(column, row, grid.columns, grid.rows);
+  }
+
+  /** Draws anew what has changed with the heights of these cells. */
+  shade(column, row, columns, rows) {
+    const { size, heights, cell } = this;
+    const reach = reachOfShade(cell);
+    const within = (at) => Math.min(size, Math.max(0, at));
+    const span = (begin, count, margin) => [within(begin - margin), within(begin + count + margin)];
+    const [[left, right], [below, above]] = [span(column, columns, reach), span(row, rows, reach)];
+    // What lies around has a part in it.
+    const [[c0, c1], [r0, r1]] = [span(column, columns, 2 * reach), span(row, rows, 2 * reach)];
+    if (left === right || below === above) return;
+    const part = new Float32Array((c1 - c0) * (r1 - r0));
+    for (let r = r0; r < r1; ++r) part.set(heights.subarray(r * size + c0, r * size + c1), (r - r0) * (c1 - c0));
+    const picture = pictureOf(hillshade(part, c1 - c0, r1 - r0, cell), c1 - c0, r1 - r0);
+    this.image.getContext('2d').putImageData(
+      picture, size - r1, size - c1, r1 - above, c1 - right, above - below, right - left);
   }
 
   drawn() {
-    return drawnGround({
-      x: this.column * this.cell, y: this.row * this.cell, cell: this.cell, columns: this.size, rows: this.size,
-      heights: this.heights,
-    });
+    const metres = this.size * this.cell;
+    return { x: this.column * this.cell, y: this.row * this.cell, width: metres, height: metres, image: this.image };
   }
 }

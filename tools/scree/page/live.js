@@ -96,9 +96,6 @@ class Live {
     this.latestGrid = grid;
     if (!this.live || Math.abs(this.live.cell - grid.cell) > 1e-6) this.live = new LiveGround(grid.cell);
     this.live.add(grid);
-    const now = performance.now();
-    if (this.image && now < this.shadedAt + 400) return;
-    this.shadedAt = now;
     this.image = this.live.drawn();
     this.map.redraw();
   }

@@ -192,12 +192,14 @@ function drawUnknown(context, view, grid) {
 }
 
 function unknownImage({ state, columns, rows }) {
-  const canvas = Object.assign(document.createElement('canvas'), { width: rows, height: columns });
-  const context = canvas.getContext('2d');
-  context.fillStyle = 'rgba(60, 20, 90, 0.26)';
+  const image = new ImageData(rows, columns);
+  const pixels = new Uint32Array(image.data.buffer);
+  const tint = 0x425a143c; // red 60, green 20, blue 90, a quarter opaque
   state.forEach((cell, i) => {
-    if (cell === 0) context.fillRect(rows - 1 - Math.floor(i / columns), columns - 1 - i % columns, 1, 1);
+    if (cell === 0) pixels[(columns - 1 - i % columns) * rows + rows - 1 - Math.floor(i / columns)] = tint;
   });
+  const canvas = newCanvas(rows, columns);
+  canvas.getContext('2d').putImageData(image, 0, 0);
   return canvas;
 }
 
