@@ -42,6 +42,7 @@ class ViewTest(LiveDaemonTest):
         self.addCleanup(player.stop)
         page.wait_for("page.latest && page.latest.obstacles.length > 3 && page.image")
         page.wait_for("page.trail.length > 20")
+        page.page.wait_for_timeout(3000)  # it is the rate of three seconds
         rate = page.of("page.rates.list.perSecond()")
         print(f"{rate:.1f} lists a second were shown")
         shown = page.of("JSON.stringify(page.latest.obstacles.map((it) => it.id))")
