@@ -32,6 +32,12 @@ void add_refused(const Names& names, const Reasons& reasons, const Counts& count
   }
 }
 
+/// Whether the lidar is there and sends, but no data packets.
+bool sends_position_only(const LidarStatus& lidar, std::int64_t now_ns) {
+  constexpr std::int64_t kRecent = 500'000'000;
+  return lidar.last_position_ns != 0 && now_ns - lidar.last_position_ns < kRecent;
+}
+
 /// Whether Scree has asked the IMU for messages without an orientation.
 bool gives_high_rates(const ImuSettings& imu) {
   return imu.configure && (imu.acceleration_hr_rate > 0 || imu.gyro_hr_rate > 0);
@@ -80,7 +86,7 @@ bool HealthWatch::update(std::int64_t now_ns, const LidarStatus& lidar, const Im
 bool HealthWatch::update_sensors(std::int64_t now_ns, const LidarStatus& lidar,
                                  const ImuStatus& imu, const EncoderStatus& encoder,
                                  health_t& health) {
-  bool has_changed = lidar_.update(now_ns, status_of(lidar), health.lidar, log_);
+  bool has_changed = lidar_.update(now_ns, status_of(lidar, now_ns), health.lidar, log_);
   // Those that are switched off are not missed.
   if (!settings_.imu.device.empty()) {
     has_changed |= imu_.update(now_ns, status_of(imu), health.imu, log_);
@@ -133,9 +139,14 @@ void HealthWatch::name_senders(const LidarStatus& lidar) {
                        ipv4_text(lidar.senders.other()), ipv4_text(lidar.senders.taken()));
 }
 
-SensorStatus HealthWatch::status_of(const LidarStatus& lidar) const {
+SensorStatus HealthWatch::status_of(const LidarStatus& lidar, std::int64_t now_ns) const {
   SensorStatus status;
   status.source = sender_;
+  if (sends_position_only(lidar, now_ns)) {
+    status.advice =
+        "its position packets come, so power and cable are right: are its lasers off, does its "
+        "motor turn, is lidar.port its data port?";
+  }
   status.last_heard_ns = lidar.last_datagram_ns;
   status.last_message_ns = lidar.last_packet_ns;
   status.messages = lidar.lidar.accepted;
@@ -181,16 +192,18 @@ SensorStatus HealthWatch::status_of(const EncoderStatus& encoder) const {
 /// Why the robot is blind; empty when it sees.
 std::string HealthWatch::blind_reason(std::int64_t now_ns, const LidarStatus& lidar,
                                       std::int8_t state, const DetectorStatus& detector) const {
+  const std::string_view position =
+      sends_position_only(lidar, now_ns) ? ", but position packets come" : "";
   switch (state) {
     case sensor_health_t::NEVER_SEEN:
-      return lidar.data_port.foreign == 0 ? fmt::format("nothing has come on {}", port_)
+      return lidar.data_port.foreign == 0 ? fmt::format("nothing has come on {}{}", port_, position)
                                           : fmt::format("datagrams on {} come from others than {}",
                                                         port_, settings_.lidar.sender);
     case sensor_health_t::SILENT:
-      return fmt::format("no packets on {}", port_);
+      return fmt::format("no packets on {}{}", port_, position);
     case sensor_health_t::WRONG_DATA:
       return fmt::format("datagrams on {} are not packets of a {}: {}", port_,
-                         name_of(settings_.lidar.model), status_of(lidar).main_reason());
+                         name_of(settings_.lidar.model), status_of(lidar, now_ns).main_reason());
     default:
       break;
   }

@@ -67,7 +67,7 @@ public:
 
 private:
   void name_senders(const LidarStatus& lidar);
-  SensorStatus status_of(const LidarStatus& lidar) const;
+  SensorStatus status_of(const LidarStatus& lidar, std::int64_t now_ns) const;
   SensorStatus status_of(const ImuStatus& imu) const;
   SensorStatus status_of(const EncoderStatus& encoder) const;
   bool update_sensors(std::int64_t now_ns, const LidarStatus& lidar, const ImuStatus& imu,

@@ -91,6 +91,7 @@ void LidarReader::read_position() {
     const auto packet = velodyne::parse_position_packet(datagram->bytes);
     if (!packet) continue;
     ++status_.position_packets;
+    status_.last_position_ns = steady_ns();
     status_.has_no_pulse = packet->pps == velodyne::PpsStatus::absent;
   }
 }

@@ -25,6 +25,7 @@ struct LidarStatus {
   velodyne::Firmware firmware = velodyne::Firmware::undecided;
   std::int64_t last_packet_ns = 0;  ///< of a data packet that was accepted
   std::uint64_t position_packets = 0;
+  std::int64_t last_position_ns = 0;
 
   std::uint64_t pulses = 0;   ///< of the pulse per second
   bool is_pps_lost = false;   ///< its GPIO chip is gone

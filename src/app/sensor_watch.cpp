@@ -71,7 +71,7 @@ bool SensorWatch::update(std::int64_t now_ns, const SensorStatus& status, sensor
 
   if (health.state != before) log.push_back(line_of(now_ns, status, health, before));
   if (state_ == sensor_health_t::NEVER_SEEN && !logged_missing_ && now_ns - start_ns_ >= kSecond) {
-    log.push_back({true, fmt::format("no {} have come yet: {}", terms_.messages, terms_.advice)});
+    log.push_back({true, fmt::format("no {} have come yet: {}", terms_.messages, advice(status))});
     logged_missing_ = true;
   }
   refused_.resize(status.refused.size());
@@ -127,7 +127,7 @@ LogLine SensorWatch::line_of(std::int64_t now_ns, const SensorStatus& status,
   const std::string& messages = terms_.messages;
   switch (health.state) {
     case sensor_health_t::SILENT:
-      return {true, fmt::format("no {} any more: {}", messages, terms_.advice)};
+      return {true, fmt::format("no {} any more: {}", messages, advice(status))};
     case sensor_health_t::WRONG_DATA:
       return {true, fmt::format("{} are not understood ({}): is it the configured sensor, and set "
                                 "up as configured?",

@@ -1,6 +1,7 @@
 """scree doctor as a program: python3 doctor_test.py SCREED SCREE [TEST ...]"""
 
 import ctypes
+import itertools
 import os
 import socket
 import subprocess
@@ -68,10 +69,11 @@ class DoctorTest(ProgramTest):
         self.addCleanup(thread.join)
         self.addCleanup(stop.set)
 
-    def send(self, payload, port):
-        sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    def send(self, payload_of, port):
+        """Datagrams, each by its number."""
+        sender, numbers = socket.socket(socket.AF_INET, socket.SOCK_DGRAM), itertools.count()
         self.addCleanup(sender.close)
-        self.keep_on(lambda: sender.sendto(payload, ("127.0.0.1", port)))
+        self.keep_on(lambda: sender.sendto(payload_of(next(numbers)), ("127.0.0.1", port)))
 
     def test_without_anything_each_line_says_what_to_do(self):
         lines = self.doctor()
@@ -88,7 +90,7 @@ class DoctorTest(ProgramTest):
             self.assertIn(subject, lines)
 
     def test_sensors_that_say_something_are_heard(self):
-        self.send(data_packet(0), self.port)
+        self.send(data_packet, self.port)
         mti = EmulatedMti(self.imu)
         mti.plug_in()
         self.addCleanup(mti.unplug)
@@ -101,14 +103,34 @@ class DoctorTest(ProgramTest):
         self.assert_line(lines, "IMU", "ok", "answers and measures")
 
     def test_packets_of_another_size_or_to_another_port_are_said(self):
-        self.send(bytes(512), self.port)
+        self.send(lambda _: bytes(512), self.port)
         self.assert_line(self.doctor(), "lidar", "WRONG", "from 127.0.0.1 has 512 bytes")
         if os.geteuid() != 0:
             self.skipTest("seeing packets to other ports takes the right CAP_NET_RAW")
         port = free_port()
-        self.send(data_packet(0), port)
+        self.send(data_packet, port)
         self.config = self.write("other.toml", f"[lidar]\nport = {free_port()}\n")
         self.assert_line(self.doctor(), "lidar", "WRONG", f"set lidar.port = {port}")
+
+    def test_packets_that_screed_would_refuse_are_refused(self):
+        def of_another_model(product, mode=0x37):
+            return lambda number: data_packet(number)[:1204] + bytes([mode, product])
+
+        for packets, words in [
+            (of_another_model(0x24), 'set lidar.model = "puck_hires"'),
+            (of_another_model(0x28), "VLP-32C"),
+            (of_another_model(0x22, mode=0), "return mode byte"),
+            (lambda _: b"\xff" * 1206, "does not begin with FF EE"),
+        ]:
+            self.port = free_port()
+            config = self.write("other.toml", f"[lidar]\nport = {self.port}\n")
+            self.send(packets, self.port)
+            self.assert_line(self.doctor(config), "lidar", "WRONG", words)
+
+    def test_position_packets_alone_are_no_matter_of_power_or_cable(self):
+        config = self.write("other.toml", f"[lidar]\nport = {self.port}\nposition_port = {self.position_port}\n")
+        self.send(lambda _: bytes(512), self.position_port)
+        self.assert_line(self.doctor(config), "lidar", "WRONG", "so power and cable are right")
 
     def test_another_program_on_the_port_is_named(self):
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:

@@ -70,12 +70,30 @@ std::string nothing_came(const LidarSettings& lidar, const LidarTraffic& traffic
   if (traffic.seen) {
     if (std::string why = why_not_heard(lidar, traffic); !why.empty()) return why;
   }
+  if (traffic.position_packets > 0) {
+    return fmt::format(
+        "nothing came to UDP port {}, but position packets come to {}, so power and cable are "
+        "right: are its lasers off, does its motor turn, is lidar.port its data port?",
+        lidar.port, lidar.position_port);
+  }
   return fmt::format(
       "nothing came to UDP port {} in {:g} s: check the sensor's power and cable, and "
       "the destination on its web page (http://192.168.1.201 by default; this "
       "computer is {}){}",
       lidar.port, traffic.seconds, addresses(traffic.own_addresses),
       traffic.seen ? "" : "; as root this looks at other ports and addresses too");
+}
+
+/// Why none of the packets is of use; empty: some are.
+std::string why_of_no_use(const LidarTraffic& traffic) {
+  constexpr std::int64_t kDark = 500'000'000;
+  const auto& refused = traffic.packets.refused;
+  const auto most = std::ranges::max_element(refused);
+  if (*most > traffic.packets.accepted) {
+    const auto reason = static_cast<std::size_t>(most - refused.begin());
+    return fmt::format("{} of them refused: {}", *most, velodyne::kRefusalReasons[reason]);
+  }
+  return traffic.without_return_ns > kDark ? "no return in them: is it covered?" : "";
 }
 
 }  // namespace
@@ -99,9 +117,11 @@ Finding check_lidar_traffic(const LidarSettings& lidar, const LidarTraffic& traf
                                "of them, choose it with lidar.sender",
                                ipv4_text(kind.sender), ipv4_text(second->first.sender)));
     }
-    return ok(subject, fmt::format("{:.0f} packets a second of {} bytes from {}",
-                                   static_cast<double>(count) / traffic.seconds, kind.size,
-                                   ipv4_text(kind.sender)));
+    const std::string what = fmt::format("{:.0f} packets a second of {} bytes from {}",
+                                         static_cast<double>(count) / traffic.seconds, kind.size,
+                                         ipv4_text(kind.sender));
+    const std::string why = why_of_no_use(traffic);
+    return why.empty() ? ok(subject, what) : wrong(subject, what + ", " + why);
   }
   const auto foreign = busiest(traffic.heard, is_data);
   if (foreign) {

@@ -9,6 +9,7 @@
 
 #include "doctor/finding.hpp"
 #include "scree/config/settings.hpp"
+#include "scree/drivers/velodyne/lidar_stream.hpp"
 
 namespace scree {
 
@@ -29,6 +30,11 @@ using DatagramCounts = std::map<DatagramKind, std::uint64_t>;
 struct LidarTraffic {
   /// Through a socket on lidar.port, of any sender; the destination is not known.
   DatagramCounts heard;
+  /// Datagrams on lidar.position_port.
+  std::uint64_t position_packets = 0;
+  /// What screed's own check says of the data packets that came.
+  velodyne::LidarCounters packets;
+  std::int64_t without_return_ns = 0;  ///< as LidarStream tells it
   /// Off the wire, before any firewall, to any port and address; nothing without the right to.
   std::optional<DatagramCounts> seen;
   std::vector<std::uint32_t> own_addresses;

@@ -9,6 +9,8 @@
 #include <thread>
 #include <utility>
 
+#include "scree/core/ipv4.hpp"
+
 namespace scree::cli {
 namespace {
 
@@ -17,7 +19,9 @@ using Clock = std::chrono::steady_clock;
 }  // namespace
 
 Listening::Listening(const Settings& settings, bool is_screed_running)
-    : settings_(settings), imu_stream_(settings.imu, [](const ImuSample&) {}) {
+    : settings_(settings),
+      lidar_stream_(settings.lidar, [](const Sweep&) {}),
+      imu_stream_(settings.imu, [](const ImuSample&) {}) {
   lidar_.own_addresses = own_addresses();
   if (wire_.is_open()) lidar_.seen.emplace();
   if (is_screed_running) {
@@ -36,6 +40,8 @@ Listening::Listening(const Settings& settings, bool is_screed_running)
     } else {
       port_problem_ = port.error().message;
     }
+    auto position = UdpReceiver::open(settings.lidar.address, settings.lidar.position_port, "");
+    if (position) position_port_ = std::move(*position);
     auto imu = xsens::Device::open(settings.imu);
     if (imu) {
       imu_ = std::move(*imu);
@@ -58,6 +64,12 @@ void Listening::listen(double seconds) {
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   lidar_.seconds = seconds;
+  lidar_.packets = lidar_stream_.counters();
+  lidar_.without_return_ns = lidar_stream_.without_return_ns();
+  if (health_) {
+    lidar_.position_packets =
+        static_cast<std::uint64_t>(health_->position_packets - first_health_->position_packets);
+  }
   if (health_) average_rates();
   if (!encoder_) return;
   encoder_->seconds = seconds;
@@ -84,7 +96,12 @@ void Listening::listen_once(std::int64_t now_ns) {
     const auto datagram = port_->receive(buffer);
     if (!datagram) break;
     ++lidar_.heard[{datagram->sender, 0, port_->port(), datagram->bytes.size()}];
+    const std::string& wanted = settings_.lidar.sender;
+    if (wanted.empty() || ipv4_text(datagram->sender) == wanted) {
+      lidar_stream_.take(datagram->bytes, datagram->arrival_ns);
+    }
   }
+  while (position_port_ && position_port_->receive(buffer)) ++lidar_.position_packets;
   if (lidar_.seen) wire_.listen(*lidar_.seen);
   if (subscriber_) subscriber_->handle(0);
   while (imu_) {

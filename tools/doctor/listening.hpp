@@ -9,6 +9,7 @@
 #include "doctor/probes.hpp"
 #include "scree/config/settings.hpp"
 #include "scree/drivers/encoder/can_socket.hpp"
+#include "scree/drivers/velodyne/lidar_stream.hpp"
 #include "scree/drivers/velodyne/udp_receiver.hpp"
 #include "scree/drivers/xsens/device.hpp"
 #include "scree/drivers/xsens/imu_stream.hpp"
@@ -42,7 +43,8 @@ private:
 
   const Settings& settings_;
   LidarTraffic lidar_;
-  std::optional<UdpReceiver> port_;
+  std::optional<UdpReceiver> port_, position_port_;
+  velodyne::LidarStream lidar_stream_;
   std::string port_problem_;
   WireListener wire_;
   std::unique_ptr<Subscriber> subscriber_;

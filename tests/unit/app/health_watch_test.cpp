@@ -86,6 +86,20 @@ TEST_F(HealthWatchTest, WithoutASenderItIsBlindAndSaysSoOnceAfterASecond) {
   EXPECT_THAT(drive(50), AllOf(HasSubstr("first datagram"), Not(HasSubstr("again"))));
 }
 
+TEST_F(HealthWatchTest, PositionPacketsAloneAreNoMatterOfPowerOrCable) {
+  status_.last_position_ns = now_ + 800 * kMillisecond;
+  EXPECT_THAT(pass(1000),
+              AllOf(HasSubstr("no packets on UDP port 2368 have come yet: its position"),
+                    HasSubstr("power and cable are right"), Not(HasSubstr("check the sensor's"))));
+  EXPECT_EQ(health_.reason, "nothing has come on UDP port 2368, but position packets come");
+  drive(50);
+  status_.last_position_ns = now_ + 900 * kMillisecond;
+  EXPECT_THAT(pass(1000), HasSubstr("no packets on UDP port 2368 any more: its position packets"));
+  EXPECT_EQ(health_.reason, "no packets on UDP port 2368, but position packets come");
+  EXPECT_THAT(pass(1000), IsEmpty());
+  EXPECT_EQ(health_.reason, "no packets on UDP port 2368");
+}
+
 TEST_F(HealthWatchTest, OnlyOtherSendersIsSaid) {
   status_.data_port.foreign = 12;
   EXPECT_THAT(pass(100), HasSubstr("not from 192.168.1.201 (12 more"));

@@ -95,6 +95,7 @@ private:
   /// A screed with another configuration is none.
   void find_screed() {
     owner_ = owner_of_port(settings_.lidar.port);
+    position_owner_ = owner_of_port(settings_.lidar.position_port);
     if (owner_ && owner_->process.name == "screed") screed_ = owner_->process;
   }
 
@@ -116,7 +117,7 @@ private:
       check_port("UDP port", "lidar.port", settings_.lidar.port, owner_);
     }
     const int position = settings_.lidar.position_port;
-    check_port("position port", "lidar.position_port", position, owner_of_port(position));
+    check_port("position port", "lidar.position_port", position, position_owner_);
     if (!screed_) return add(ok("screed", "it does not run: this looks at the sensors itself"));
     if (const auto& health = listening.health()) {
       add(health->state == health_t::OK ? ok("screed", "it runs, and sees")
@@ -223,8 +224,8 @@ private:
 
   DoctorOptions options_;
   Settings settings_;
-  std::optional<PortOwner> owner_;  // of the lidar's port, before it is listened on
-  std::optional<Process> screed_;   // the same, where it is screed
+  std::optional<PortOwner> owner_, position_owner_;  // of the lidar's ports, before listening
+  std::optional<Process> screed_;                    // the same, where it is screed
   std::vector<Finding> findings_;
 };
 
