@@ -23,6 +23,30 @@ Result<void> check_planner_url(const std::string& url) {
   return fail("at the LCM url " + url + " no planner hears: udpm://239.255.76.67:7667?ttl=0");
 }
 
+namespace fs = std::filesystem;
+
+/// Of a folder that screed makes: what there is of its path must be a folder.
+Result<void> check_folder(const fs::path& folder) {
+  std::error_code none;
+  fs::path there = folder;
+  while (!there.empty() && !fs::exists(there, none) && there != there.parent_path()) {
+    there = there.parent_path();
+  }
+  if (folder.empty() || fs::is_directory(there, none)) return {};
+  return fail(there.string() + " is no folder");
+}
+
+/// Of a file whose place a new one takes again and again: a device would be gone.
+Result<void> check_replaced_file(const fs::path& file) {
+  std::error_code none;
+  if (file.empty()) return {};
+  if (fs::exists(file, none) && !fs::is_regular_file(file, none)) {
+    return fail(file.string() + " is no plain file");
+  }
+  if (fs::is_directory(file.parent_path(), none)) return {};
+  return fail("there is no folder " + file.parent_path().string());
+}
+
 std::vector<KeyMistake> unusable(const Configuration& configuration) {
   const Settings& settings = configuration.settings;
   std::vector<KeyMistake> found;
@@ -37,6 +61,8 @@ std::vector<KeyMistake> unusable(const Configuration& configuration) {
   judge("gpio.stop", gpio::check_name(settings.gpio.stop));
   judge("gpio.heartbeat", gpio::check_name(settings.gpio.heartbeat));
   judge("lcm.url", check_planner_url(settings.lcm.url));
+  judge("blackbox.folder", check_folder(settings.blackbox.folder));
+  judge("metrics.file", check_replaced_file(settings.metrics.file));
   return found;
 }
 

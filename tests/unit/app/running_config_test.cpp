@@ -1,11 +1,14 @@
 #include "app/running_config.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "unit/temporary_folder.hpp"
 
 namespace scree {
 namespace {
+
+using ::testing::HasSubstr;
 
 TEST(RunningConfig, ABadFileLeavesTheOldSettings) {
   const TemporaryFolder folder;
@@ -38,6 +41,29 @@ TEST(RunningConfig, ABadFileLeavesTheOldSettings) {
   EXPECT_EQ(config->settings().map.wait, 0.1);
   EXPECT_EQ(config->settings().lidar.port, 4000) << "bound already";
   EXPECT_FALSE(config->reread()) << "nothing new";
+}
+
+TEST(RunningConfig, FilesThatItWouldReplaceOrCannotMakeAreRefused) {
+  const TemporaryFolder folder;
+  const auto refusal = [&](const std::string& text) {
+    const auto config = RunningConfig::read(folder.write("robot.toml", text));
+    return config ? "" : config.error().message;
+  };
+  const std::string here = folder.write("plain", "").string();
+  const auto file = [&](const std::string& path) {
+    return refusal("[metrics]\nfile = \"" + path + "\"\n");
+  };
+  const auto box = [&](const std::string& path) {
+    return refusal("[blackbox]\nfolder = \"" + path + "\"\n");
+  };
+  EXPECT_EQ(file(here), "");
+  EXPECT_EQ(file(here + ".prom"), "");
+  EXPECT_THAT(file("/dev/null"), HasSubstr("metrics.file: /dev/null is no plain file"));
+  EXPECT_THAT(file("/tmp"), HasSubstr("is no plain file"));
+  EXPECT_THAT(file("/nowhere/a.prom"), HasSubstr("there is no folder /nowhere"));
+  EXPECT_EQ(box(here + "_box/deeper"), "");
+  EXPECT_THAT(box(here), HasSubstr("blackbox.folder: " + here + " is no folder"));
+  EXPECT_THAT(box(here + "/box"), HasSubstr(here + " is no folder"));
 }
 
 }  // namespace
