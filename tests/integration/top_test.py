@@ -76,7 +76,7 @@ class TopTest(ProgramTest):
         self.shows("no health yet", "does screed run")
         sender = Sender(self.url, messages())
         self.addCleanup(lambda: sender.stopped.is_set() or sender.stop())
-        self.shows("screed 7.8.9", "SEES", "lidar   ok", "imu     never seen",
+        self.shows("screed 7.8.9", "SEES", "lidar   ok", "imu     off",
                    "42    rock    5.00   37 L", "TIME, ms", "^")  # fmt: skip
         self.resize(10, 46)
         self.screen.reset()

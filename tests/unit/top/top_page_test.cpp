@@ -82,7 +82,7 @@ TEST(TopPage, ShowsHealthAndObstacles) {
   EXPECT_THAT(text, HasSubstr("lidar   ok           751/754       3       7  PPS-locked       0.00"
                               "    -12.500  192.168.1.201"));
   EXPECT_THAT(text, HasSubstr("imu     silent"));
-  EXPECT_THAT(text, HasSubstr("encoder never seen"));
+  EXPECT_THAT(text, HasSubstr("encoder off"));
   EXPECT_THAT(text, HasSubstr("latency          20.0   40.2    61.5"));
   EXPECT_LT(text.find("gradient"), text.find("  map")) << "the slowest first";
   EXPECT_THAT(text, HasSubstr("sweeps      1     3     3"));

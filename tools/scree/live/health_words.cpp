@@ -34,6 +34,11 @@ std::string_view state_name(std::int8_t state) {
   return name_in(kNames, state);
 }
 
+std::string_view optional_state_name(const sensor_health_t& sensor) {
+  const bool is_named = !sensor.source.empty();
+  return is_named || sensor.state != sensor_health_t::NEVER_SEEN ? state_name(sensor.state) : kOff;
+}
+
 std::string_view clock_name(std::int8_t clock) {
   constexpr std::array<std::string_view, 3> kNames = {"unsynchronised", "estimated", "PPS-locked"};
   return name_in(kNames, clock);

@@ -13,6 +13,9 @@ std::string time_of_day(std::int64_t stamp_ns);
 
 /// The word for a sensor_health_t::state.
 std::string_view state_name(std::int8_t state);
+inline constexpr std::string_view kOff = "off";
+/// The same of a sensor that the configuration may be without: IMU and encoder.
+std::string_view optional_state_name(const sensor_health_t& sensor);
 /// The word for a sensor_health_t::clock.
 std::string_view clock_name(std::int8_t clock);
 

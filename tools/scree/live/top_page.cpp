@@ -71,14 +71,15 @@ void add_header(const TopView& view, Area& area) {
   area.add(health.reason.empty() ? setup : health.reason, Tone::bad);
 }
 
-void add_sensor(const char* name, const sensor_health_t& sensor, Area& area) {
+void add_sensor(const char* name, const sensor_health_t& sensor, std::string_view state,
+                Area& area) {
   std::int64_t refused = 0;
   for (const std::int64_t count : sensor.refused) refused += count;
   area.add(fmt::format("{:<8}{:<11}{:>5.0f}/{:<5.0f}{:>6}{:>8}  {:<14}{:>7.2f}{:>11.3f}  {}", name,
-                       state_name(sensor.state), sensor.rate, sensor.expected_rate,
-                       sensor.lost + sensor.kernel_drops, refused, clock_name(sensor.clock),
-                       sensor.clock_accuracy_ms, sensor.clock_offset_s, sensor.source),
-           tone_of(sensor.state));
+                       state, sensor.rate, sensor.expected_rate, sensor.lost + sensor.kernel_drops,
+                       refused, clock_name(sensor.clock), sensor.clock_accuracy_ms,
+                       sensor.clock_offset_s, sensor.source),
+           state == kOff ? Tone::plain : tone_of(sensor.state));
 }
 
 bool knows_pose(const health_t& health) {
@@ -89,9 +90,9 @@ void add_sensors(const health_t& health, Area& area) {
   area.add(fmt::format("{:<8}{:<11}{:>5}/{:<5}{:>6}{:>8}  {:<14}{:>7}{:>11}  {}", "SENSOR", "state",
                        "rate", "due", "lost", "refused", "clock", "to ms", "offset s", "source"),
            Tone::heading);
-  add_sensor("lidar", health.lidar, area);
-  add_sensor("imu", health.imu, area);
-  add_sensor("encoder", health.encoder, area);
+  add_sensor("lidar", health.lidar, state_name(health.lidar.state), area);
+  add_sensor("imu", health.imu, optional_state_name(health.imu), area);
+  add_sensor("encoder", health.encoder, optional_state_name(health.encoder), area);
   if (!knows_pose(health)) return;
   area.add(fmt::format("pose    off by {:.2f} m and {:.2f} deg (one standard deviation)",
                        health.position_deviation, degrees(health.yaw_deviation)));

@@ -28,9 +28,9 @@ std::string clock_text(const sensor_health_t& sensor) {
   return text;
 }
 
-void append_sensor(const char* name, const sensor_health_t& sensor, const std::string& note,
-                   std::string& text) {
-  text += fmt::format("              {} {}", name, state_name(sensor.state));
+void append_sensor(const char* name, const sensor_health_t& sensor, std::string_view state,
+                   const std::string& note, std::string& text) {
+  text += fmt::format("              {} {}", name, state);
   if (!sensor.source.empty()) text += " (" + sensor.source + note + ")";
   if (sensor.messages > 0) {
     text += fmt::format(", {:.0f} of {:.0f}/s, {}", sensor.rate, sensor.expected_rate,
@@ -101,9 +101,10 @@ void append_text(const health_t& health, std::string& text) {
       "{}  health {}: {} sweeps, {} lists, latency p50 {:.1f} p99 {:.1f} max {:.1f} ms\n",
       time_of_day(health.stamp_ns), state_and_stop(health), health.sweeps, health.lists_published,
       health.latency.p50_ms, health.latency.p99_ms, health.latency.max_ms);
-  append_sensor("lidar", health.lidar, "", text);
-  append_sensor("imu", health.imu, "", text);
-  append_sensor("encoder", health.encoder, ", bus " + health.encoder_bus, text);
+  append_sensor("lidar", health.lidar, state_name(health.lidar.state), "", text);
+  append_sensor("imu", health.imu, optional_state_name(health.imu), "", text);
+  append_sensor("encoder", health.encoder, optional_state_name(health.encoder),
+                ", bus " + health.encoder_bus, text);
   for (const std::string& mistake : health.setup) text += "              " + mistake + '\n';
   if (!health.lines_problem.empty()) text += "              " + health.lines_problem + '\n';
   append_work(health, text);

@@ -113,6 +113,9 @@ std::string EncoderCapture::like_it(const encoder::EncoderCounters& counters) co
 }
 
 std::string EncoderCapture::why_nothing(const EncoderStream& stream) const {
+  if (settings_.interface.empty()) {
+    return name_ + ": encoder.interface is empty: the encoder is switched off";
+  }
   if (stream.counters().all_refused() > 0) {
     return fmt::format("{}: no signal: {}", name_, refused_frames(stream));
   }
@@ -125,6 +128,9 @@ std::string EncoderCapture::why_nothing(const EncoderStream& stream) const {
     const auto& [interface, count] = *frames_.begin();
     return fmt::format("{}: no frame of {}, but {} of {}", name_, settings_.interface, count,
                        interface);
+  }
+  if (const std::string kind = other_kind(*can_file(name_)); !kind.empty()) {
+    return fmt::format("{}: holds no CAN frame: can.log: {}", name_, kind);
   }
   if (log_.counters().all_refused() == 0) return name_ + ": holds no CAN frame";
   return fmt::format("{}: holds no CAN frame: {}", name_, refused_lines(log_));

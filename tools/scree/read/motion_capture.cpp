@@ -25,7 +25,17 @@ void put(SyncBuffer& sensors, const Sample& sample) {
 }  // namespace
 
 std::string note_of_other_clock(const char* what, const TimeSpan& sensor, const TimeSpan& lidar) {
-  if (sensor.empty() || lidar.empty() || sensor.meets(lidar)) return "";
+  constexpr std::int64_t kShift = 500'000'000;
+  if (sensor.empty() || lidar.empty()) return "";
+  const std::int64_t late_ns = sensor.first_ns - lidar.first_ns;
+  const std::int64_t early_ns = lidar.last_ns - sensor.last_ns;
+  if (sensor.meets(lidar)) {
+    if (late_ns <= kShift && early_ns <= kShift) return "";
+    return fmt::format(
+        "the {} begin {:+.1f} s and end {:+.1f} s against the lidar's packets: if they were logged "
+        "together, their clocks differ (candump -L)",
+        what, static_cast<double>(late_ns) * 1e-9, static_cast<double>(-early_ns) * 1e-9);
+  }
   return fmt::format(
       "the {} lie outside the lidar's time ({} against {}): not used; log both by the same clock "
       "(candump -L)",
@@ -42,10 +52,18 @@ MotionCapture::MotionCapture(const std::filesystem::path& capture,
   if (!std::filesystem::is_directory(capture)) return;
   // A recording that was cut short leaves empty files.
   const auto imu = imu_file(capture), can = can_file(capture);
-  if (imu && std::filesystem::file_size(*imu) > 0) imu_.emplace(capture, steps);
-  if (can) encoder_.emplace(capture, encoder_settings_, steps);
-  no_imu_ = imu ? imu->string() + ": the file is empty" : imu.error().message;
-  if (!can) no_encoder_ = can.error().message;
+  const bool has_imu = !settings.imu.device.empty();
+  const bool has_encoder = !settings.encoder.interface.empty();
+  if (has_imu && imu && std::filesystem::file_size(*imu) > 0) imu_.emplace(capture, steps);
+  if (has_encoder && can) encoder_.emplace(capture, encoder_settings_, steps);
+  no_imu_ = !has_imu ? "imu.device is empty: no IMU is used"
+            : imu    ? imu->string() + ": the file is empty"
+                     : imu.error().message;
+  if (!has_encoder) {
+    no_encoder_ = "encoder.interface is empty: no encoder is used";
+  } else if (!can) {
+    no_encoder_ = can.error().message;
+  }
   if (!imu && !can) no_motion_ = other_files(capture);
 }
 
