@@ -26,52 +26,84 @@ struct Unit {
   EncoderKind kind;
   double scale;
 };
-/// As people write them: km/h, KPH, "km / h", [km/hour].
+/// As people write them: km/h, KPH, "km / h", [km/hour], km·h-1.
 std::string normal_unit(std::string_view unit) {
   struct Word {
     std::string_view written, brief;
   };
+  constexpr std::array kDropped = {' ', '\t', '[', ']', '(', ')', '.', '^', '*', '_'};
   constexpr std::array kWords = {
-      Word{"hour", "h"},   Word{"hr", "h"},    Word{"std", "h"},         Word{"second", "s"},
-      Word{"sec", "s"},    Word{"per", "/"},   Word{"kilometers", "km"}, Word{"kilometer", "km"},
-      Word{"meters", "m"}, Word{"meter", "m"}, Word{"miles", "mi"},      Word{"mile", "mi"}};
+      Word{"hour", "h"},        Word{"hr", "h"},         Word{"stunde", "h"},
+      Word{"std", "h"},         Word{"second", "s"},     Word{"sekunde", "s"},
+      Word{"sec", "s"},         Word{"per", "/"},        Word{"pro", "/"},
+      Word{"kilometres", "km"}, Word{"kilometre", "km"}, Word{"kilometers", "km"},
+      Word{"kilometer", "km"},  Word{"metres", "m"},     Word{"metre", "m"},
+      Word{"meters", "m"},      Word{"meter", "m"},      Word{"miles", "mi"},
+      Word{"mile", "mi"},       Word{"inch", "in"},      Word{"feet", "ft"},
+      Word{"\xC2\xB7", ""},     Word{"\xC2\xB0", "deg"}, Word{"\xB0", "deg"}};
   std::string normal;
   for (const char c : lower_case(unit)) {
-    if (c != ' ' && c != '[' && c != ']') normal += c;
+    if (std::ranges::find(kDropped, c) == kDropped.end()) normal += c;
   }
   for (const Word& word : kWords) {
     const auto at = normal.find(word.written);
     if (at != std::string::npos) normal.replace(at, word.written.size(), word.brief);
   }
+  for (const std::string_view time : {"min", "h", "s"}) {
+    const std::string power = std::string(time) + "-1";
+    if (!normal.ends_with(power)) continue;
+    normal.resize(normal.size() - power.size());
+    return (normal.empty() ? "1" : normal) + "/" + std::string(time);
+  }
   return normal;
 }
 
-constexpr double kKmh = 1 / 3.6, kMph = 0.44704, kKnot = 1852.0 / 3600, kFoot = 0.3048;
+constexpr double kKmh = 1 / 3.6, kMph = 0.44704, kKnot = 1852.0 / 3600, kFoot = 0.3048,
+                 kInch = kFoot / 12, kMile = 1609.344;
 constexpr std::array kUnits = {
-    Unit{"m/s", EncoderKind::speed, 1},      Unit{"mps", EncoderKind::speed, 1},
-    Unit{"dm/s", EncoderKind::speed, 0.1},   Unit{"cm/s", EncoderKind::speed, 0.01},
-    Unit{"mm/s", EncoderKind::speed, 0.001}, Unit{"m/min", EncoderKind::speed, 1.0 / 60},
-    Unit{"km/h", EncoderKind::speed, kKmh},  Unit{"kph", EncoderKind::speed, kKmh},
-    Unit{"kmh", EncoderKind::speed, kKmh},   Unit{"kmph", EncoderKind::speed, kKmh},
-    Unit{"mph", EncoderKind::speed, kMph},   Unit{"mi/h", EncoderKind::speed, kMph},
-    Unit{"kn", EncoderKind::speed, kKnot},   Unit{"kt", EncoderKind::speed, kKnot},
-    Unit{"knot", EncoderKind::speed, kKnot}, Unit{"knots", EncoderKind::speed, kKnot},
-    Unit{"ft/s", EncoderKind::speed, kFoot}, Unit{"in/s", EncoderKind::speed, kFoot / 12},
-    Unit{"m", EncoderKind::counter, 1},      Unit{"cm", EncoderKind::counter, 0.01},
-    Unit{"mm", EncoderKind::counter, 0.001}, Unit{"km", EncoderKind::counter, 1000},
+    Unit{"m/s", EncoderKind::speed, 1},          Unit{"mps", EncoderKind::speed, 1},
+    Unit{"dm/s", EncoderKind::speed, 0.1},       Unit{"cm/s", EncoderKind::speed, 0.01},
+    Unit{"mm/s", EncoderKind::speed, 0.001},     Unit{"um/s", EncoderKind::speed, 1e-6},
+    Unit{"m/min", EncoderKind::speed, 1.0 / 60}, Unit{"m/h", EncoderKind::speed, 1.0 / 3600},
+    Unit{"km/h", EncoderKind::speed, kKmh},      Unit{"kph", EncoderKind::speed, kKmh},
+    Unit{"kmh", EncoderKind::speed, kKmh},       Unit{"kmph", EncoderKind::speed, kKmh},
+    Unit{"km-h", EncoderKind::speed, kKmh},      Unit{"km/s", EncoderKind::speed, 1000},
+    Unit{"mph", EncoderKind::speed, kMph},       Unit{"mi/h", EncoderKind::speed, kMph},
+    Unit{"kn", EncoderKind::speed, kKnot},       Unit{"kt", EncoderKind::speed, kKnot},
+    Unit{"kts", EncoderKind::speed, kKnot},      Unit{"knot", EncoderKind::speed, kKnot},
+    Unit{"knots", EncoderKind::speed, kKnot},    Unit{"fps", EncoderKind::speed, kFoot},
+    Unit{"ft/s", EncoderKind::speed, kFoot},     Unit{"in/s", EncoderKind::speed, kInch},
+    Unit{"m", EncoderKind::counter, 1},          Unit{"dm", EncoderKind::counter, 0.1},
+    Unit{"cm", EncoderKind::counter, 0.01},      Unit{"mm", EncoderKind::counter, 0.001},
+    Unit{"um", EncoderKind::counter, 1e-6},      Unit{"km", EncoderKind::counter, 1000},
+    Unit{"in", EncoderKind::counter, kInch},     Unit{"ft", EncoderKind::counter, kFoot},
+    Unit{"mi", EncoderKind::counter, kMile},
 };
 
-/// What a unit of the rate at which a wheel, or its motor, turns is in turns a second.
+constexpr double kRadian = 1 / (2 * std::numbers::pi), kDegree = 1.0 / 360;
+
+/// What a unit in which a wheel, or its motor, turns is in turns, or in turns a second.
 struct TurnUnit {
   std::string_view name;
+  EncoderKind kind;
   double rate;
 };
-constexpr std::array kTurnUnits = {
-    TurnUnit{"rpm", 1.0 / 60},   TurnUnit{"1/min", 1.0 / 60},
-    TurnUnit{"u/min", 1.0 / 60}, TurnUnit{"rev/min", 1.0 / 60},
-    TurnUnit{"rps", 1},          TurnUnit{"hz", 1},
-    TurnUnit{"rev/s", 1},        TurnUnit{"rad/s", 1 / (2 * std::numbers::pi)},
-    TurnUnit{"deg/s", 1.0 / 360}};
+constexpr std::array kTurnUnits = {TurnUnit{"rpm", EncoderKind::speed, 1.0 / 60},
+                                   TurnUnit{"1/min", EncoderKind::speed, 1.0 / 60},
+                                   TurnUnit{"u/min", EncoderKind::speed, 1.0 / 60},
+                                   TurnUnit{"r/min", EncoderKind::speed, 1.0 / 60},
+                                   TurnUnit{"rev/min", EncoderKind::speed, 1.0 / 60},
+                                   TurnUnit{"rot/min", EncoderKind::speed, 1.0 / 60},
+                                   TurnUnit{"tr/min", EncoderKind::speed, 1.0 / 60},
+                                   TurnUnit{"rps", EncoderKind::speed, 1},
+                                   TurnUnit{"hz", EncoderKind::speed, 1},
+                                   TurnUnit{"1/s", EncoderKind::speed, 1},
+                                   TurnUnit{"rev/s", EncoderKind::speed, 1},
+                                   TurnUnit{"rad/s", EncoderKind::speed, kRadian},
+                                   TurnUnit{"deg/s", EncoderKind::speed, kDegree},
+                                   TurnUnit{"rev", EncoderKind::counter, 1},
+                                   TurnUnit{"rad", EncoderKind::counter, kRadian},
+                                   TurnUnit{"deg", EncoderKind::counter, kDegree}};
 
 std::string wrong_kind(const EncoderSettings& settings, std::string_view unit) {
   return fmt::format("encoder.kind is {}, but the unit of {} is {}", name_of(settings.kind),
@@ -82,7 +114,7 @@ std::string wrong_kind(const EncoderSettings& settings, std::string_view unit) {
 std::string contradiction(const EncoderSettings& settings, const TurnUnit& unit,
                           std::string_view written) {
   constexpr double kLargestWheel = 8;  // metres around
-  if (settings.kind != EncoderKind::speed) return wrong_kind(settings, written);
+  if (settings.kind != unit.kind) return wrong_kind(settings, written);
   const double around = std::abs(settings.scale) / unit.rate;
   if (around <= kLargestWheel) return {};
   return fmt::format(
@@ -103,18 +135,23 @@ std::string contradiction(const EncoderSettings& settings, const DbcSignal& sign
   const std::string normal = normal_unit(unit);
   const auto* const turn = std::ranges::find(kTurnUnits, normal, &TurnUnit::name);
   if (turn != kTurnUnits.end()) return contradiction(settings, *turn, unit);
-  for (const Unit& known : kUnits) {
-    if (normal != known.name) continue;
-    if (settings.kind != known.kind) return wrong_kind(settings, unit);
-    const double scale = std::abs(settings.scale), ratio = scale / known.scale;
-    const bool is_forgotten = scale == 1 && known.scale != 1;
-    if (is_forgotten || ratio > 2 || ratio < 0.5) {
-      return fmt::format("encoder.scale = {} cannot be for {}, whose unit is {}: 1 {} is {:.6g} {}",
-                         settings.scale, settings.signal, unit, unit, known.scale,
-                         known.kind == EncoderKind::speed ? "m/s" : "m");
-    }
+  const auto* const known = std::ranges::find(kUnits, normal, &Unit::name);
+  const double scale = std::abs(settings.scale);
+  const std::string_view metres = settings.kind == EncoderKind::speed ? "m/s" : "m";
+  if (known == kUnits.end()) {
+    constexpr std::array<std::string_view, 5> kNoUnit = {"", "-", "1", "none", "n/a"};
+    const bool has_one = std::ranges::find(kNoUnit, normal) == kNoUnit.end();
+    if (scale != 1 || !has_one) return {};
+    return fmt::format(
+        "encoder.scale = {} cannot be for {}, whose unit, {}, is not known: set what 1 {} is in {}",
+        settings.scale, settings.signal, unit, unit, metres);
   }
-  return {};
+  if (settings.kind != known->kind) return wrong_kind(settings, unit);
+  const double ratio = scale / known->scale;
+  const bool is_forgotten = scale == 1 && known->scale != 1;
+  if (!is_forgotten && ratio <= 2 && ratio >= 0.5) return {};
+  return fmt::format("encoder.scale = {} cannot be for {}, whose unit is {}: 1 {} is {:.6g} {}",
+                     settings.scale, settings.signal, unit, unit, known->scale, metres);
 }
 
 /// What the messages and signals with long names are called.

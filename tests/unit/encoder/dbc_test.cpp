@@ -243,8 +243,9 @@ TEST(WithDbc, FillsInTheSettings) {
 
 TEST(WithDbc, UnitsAreComparedWithoutCaseAndBlanks) {
   const TemporaryFolder folder;
-  for (const char* unit :
-       {"KPH", "Kph", "Km/h", "km / h", "[km/h]", "km/hr", "kilometers per hour", "kmph"}) {
+  for (const char* unit : {"KPH", "Kph", "Km/h", "km / h", "[km/h]", "km/hr", "kilometers per hour",
+                           "kmph", "(km/h)", "kph.", "km-h", "kmh-1", "km.h-1", "km·h-1", "km/h\t",
+                           "kilometres per hour", "kilometer pro stunde"}) {
     folder.write("robot.dbc",
                  fmt::format("BO_ 1 M: 8 X\n SG_ S : 0|16@1+ (0.01,0) [0|1] \"{}\" X\n", unit));
     const auto filled = with_dbc(settings_for("M.S", EncoderKind::speed, 1), folder / "robot.toml");
@@ -261,13 +262,35 @@ TEST(WithDbc, AScaleThatCannotBeForTheUnitIsRefused) {
     return with_dbc(settings_for("M.S", EncoderKind::speed, scale), folder / "robot.toml")
         .has_value();
   };
-  for (const char* unit : {"mi/h", "knots", "ft/s", "m/min", "rpm", "U/min", "deg/s"}) {
+  for (const char* unit :
+       {"mi/h", "knots", "ft/s", "m/min", "rpm", "U/min", "deg/s", "kts", "fps", "inch/s", "um/s",
+        "r/min", "min-1", "°/s", "0.1 km/h", "pulses/s", "m/s^2", "furlongs"}) {
     EXPECT_FALSE(is_taken(unit, 1)) << unit;
   }
   EXPECT_TRUE(is_taken("meters / second", 1));
-  EXPECT_TRUE(is_taken("furlongs", 1)) << "nobody knows";
+  for (const char* unit : {"m s-1", "metres/s", "metre per second", "m/sekunde", "", "-", "1"}) {
+    EXPECT_TRUE(is_taken(unit, 1)) << unit;
+  }
+  EXPECT_TRUE(is_taken("furlongs", 201)) << "nobody knows";
   EXPECT_TRUE(is_taken("rpm", 0.02)) << "a wheel of 1.2 m around";
   EXPECT_TRUE(is_taken("rpm", 0.0004)) << "its motor";
+}
+
+TEST(WithDbc, AScaleThatCannotBeForTheUnitOfACounterIsRefused) {
+  const TemporaryFolder folder;
+  const auto is_taken = [&](const char* unit, double scale) {
+    folder.write("robot.dbc",
+                 fmt::format("BO_ 1 M: 8 X\n SG_ S : 0|16@1+ (1,0) [0|1] \"{}\" X\n", unit));
+    return with_dbc(settings_for("M.S", EncoderKind::counter, scale), folder / "robot.toml")
+        .has_value();
+  };
+  for (const char* unit : {"inch", "ft", "mi", "deg", "°", "mm", "ticks", "m/s"}) {
+    EXPECT_FALSE(is_taken(unit, 1)) << unit;
+  }
+  EXPECT_TRUE(is_taken("m", 1));
+  EXPECT_TRUE(is_taken("rev", 1)) << "a wheel of 1 m around";
+  EXPECT_TRUE(is_taken("inch", 0.0254));
+  EXPECT_TRUE(is_taken("ticks", 0.00078));
 }
 
 TEST(WithDbc, AFloatingPointNumberCanOnlyBeASpeed) {
