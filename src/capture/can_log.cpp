@@ -163,7 +163,7 @@ CanLineRefusal parse_can_line(std::string_view line, CanFrame& frame, std::strin
   frame = {};
   std::string_view time;
   skip_blanks(line);
-  if (line.ends_with('\r')) line.remove_suffix(1);
+  line = line.substr(0, line.find_last_not_of(" \t\r") + 1);
   if (!line.starts_with('(')) return CanLineRefusal::form;
   line.remove_prefix(1);
   if (!cut(line, ')', time) || !line.starts_with(' ')) return CanLineRefusal::form;

@@ -93,6 +93,7 @@ std::string other_kind(const fs::path& file) {
   using namespace std::string_view_literals;
   constexpr std::string_view kConvert = "convert it to PCD";
   constexpr std::string_view kImport = "`scree-py import` makes a capture of it";
+  constexpr std::string_view kCandump = "log with candump -L";
   struct Kind {
     std::string_view begin, name, remedy;
   };
@@ -106,7 +107,9 @@ std::string other_kind(const fs::path& file) {
       Kind{"#rosbag", "a ROS 1 bag", kImport},
       Kind{"sqlite format 3", "a ROS 2 bag's database", kImport},
       Kind{"\x89mcap", "an MCAP file", kImport},
-      Kind{"logg", "a CAN log of Vector (BLF)", "log with candump -L"},
+      Kind{"logg", "a CAN log of Vector (BLF)", kCandump},
+      Kind{"date ", "a CAN log of Vector (ASC)", kCandump},
+      Kind{";$fileversion", "a CAN trace of PEAK (TRC)", kCandump},
       Kind{"\xfa\xff", "Xbus bytes of an IMU", "`scree record` writes them with their times"},
       Kind{"<!doctype", "a web page", "download the file itself"},
       Kind{"<html", "a web page", "download the file itself"},

@@ -59,32 +59,34 @@ public:
     for (std::size_t i = 0; i < size_; ++i) values[i] = static_cast<float>((*this)[i] - origin);
   }
 
-  /// Of the finite ones; 0 where there are none.
-  double median() const {
-    std::vector<double> values;
-    values.reserve(size_);
-    for (std::size_t i = 0; i < size_; ++i) {
-      if (const double value = (*this)[i]; std::isfinite(value)) values.push_back(value);
-    }
-    if (values.empty()) return 0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-  }
-
 private:
   Reading reading_;
   const std::uint8_t* bytes_;
   std::size_t point_size_, size_;
 };
 
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 /// Whole metres near the middle of a cloud that lies far off, as one in UTM coordinates or at an
 /// altitude: there a float has not the digits, nor a raster the cells. Else zero.
-Eigen::Vector3d origin_for(const std::array<FieldColumn, 3>& coordinates) {
+/// Places without a return, as organized clouds have, are at 0 0 0 or nowhere: they do not count.
+Eigen::Vector3d origin_for(const std::array<FieldColumn, 3>& coordinates, std::size_t size) {
   constexpr double kFar = 100;  // metres
-  const Eigen::Vector3d middle(coordinates[0].median(), coordinates[1].median(),
-                               coordinates[2].median());
-  if (middle.cwiseAbs().maxCoeff() < kFar) return Eigen::Vector3d::Zero();
+  std::array<std::vector<double>, 3> seen;
+  for (std::size_t i = 0; i < size; ++i) {
+    const Eigen::Vector3d point(coordinates[0][i], coordinates[1][i], coordinates[2][i]);
+    if (!point.allFinite() || point == Eigen::Vector3d::Zero()) continue;
+    for (std::size_t axis = 0; axis < seen.size(); ++axis) {
+      seen[axis].push_back(point[static_cast<Eigen::Index>(axis)]);
+    }
+  }
+  if (seen[0].empty()) return Eigen::Vector3d::Zero();
+  const Eigen::Vector3d middle(median(seen[0]), median(seen[1]), median(seen[2]));
+  if (middle.cwiseAbs().maxCoeff() <= kFar) return Eigen::Vector3d::Zero();
   return middle.array().round();
 }
 
@@ -100,7 +102,7 @@ Result<PcdCloud> read_points(const std::string& bytes) {
   const auto column = [&](const PcdField& field) { return FieldColumn(*points, *header, field); };
   const std::array<FieldColumn, 3> coordinates = {
       column(*header->find({"x"})), column(*header->find({"y"})), column(*header->find({"z"}))};
-  cloud.origin = origin_for(coordinates);
+  cloud.origin = origin_for(coordinates, header->points);
   cloud.viewpoint = (header->viewpoint - cloud.origin).cast<float>();
   coordinates[0].copy_to(cloud.x, cloud.origin.x());
   coordinates[1].copy_to(cloud.y, cloud.origin.y());

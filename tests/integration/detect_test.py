@@ -226,22 +226,19 @@ class DetectTest(ProgramTest):
             self.assertEqual([o["kind"] for o in each[0]["obstacles"]], ["positive"])
             self.assertLess(math.dist(each[0]["obstacles"][0]["center"][:2], (1, 0)), 0.3)
 
-    def test_clouds_with_hardly_anything_are_no_failure(self):
+    def test_clouds_with_hardly_anything_were_not_looked_at(self):
         nan, inf = math.nan, math.inf
-        for name, points in {
-            "one": [(1.0, 2.0, 3.0)],
-            "equal": [(1.0, 2.0, 3.0)] * 5000,
-        }.items():
-            for data in ("ascii", "binary"):
-                lists = self.detect(self.write_pcd(f"{name}.pcd", points, data))
-                self.assertEqual([each["obstacles"] for each in lists], [[]], name)
         for points, words in [
+            ([(1.0, 2.0, 3.0)], "at 1 place, too few"),
+            ([(1.0, 2.0, 3.0)] * 5000, "at 1 place, too few"),
+            ([(0.3 * i, 2.0, 3.0) for i in range(20)], "at 20 places, too few"),
             ([], "holds no points"),
             ([(nan, 0.0, 0.0), (inf, 0.0, 0.0), (0.0, -inf, 0.0)] * 50, "none of its 150 points"),
             ([(nan, 0.0, 0.0)] * 199 + [(1.0, 0.0, 0.0)], "1 of its 200 points can be used"),
         ]:
-            result = self.run_to_end(SCREE, "detect", self.write_pcd("none.pcd", points))
-            self.assert_fails(result, words)
+            for data in ("ascii", "binary"):
+                result = self.run_to_end(SCREE, "detect", self.write_pcd("none.pcd", points, data))
+                self.assert_fails(result, words)
 
     def test_a_capture_without_a_return_was_not_looked_at(self):
         def without_returns(number):

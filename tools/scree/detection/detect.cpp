@@ -87,9 +87,14 @@ std::string usable(const StageCounts& counts) {
 /// An empty list says "looked, and nothing there".
 void require_points(const StageCounts& counts, const fs::path& file) {
   constexpr double kNearlyAll = 0.95;  // of the points: a depth camera's may be mostly no numbers
+  constexpr std::size_t kFewest = 30;  // places: fewer are no ground that could be looked at
   const bool has_few =
       static_cast<double>(counts.refused) > kNearlyAll * static_cast<double>(counts.input);
-  if (counts.voxels > 0 && !has_few) return;
+  if (counts.voxels >= kFewest && !has_few) return;
+  if (counts.voxels > 0 && !has_few) {
+    throw Failure(fmt::format("{}: its points are at {} place{}, too few for a ground to look at",
+                              file.string(), counts.voxels, counts.voxels == 1 ? "" : "s"));
+  }
   throw Failure(counts.input == 0
                     ? fmt::format("{}: holds no points", file.string())
                     : fmt::format("{}: {} of its {} points can be used: the others are not finite "
@@ -147,10 +152,11 @@ void detect_in_capture(const DetectOptions& options) {
   if (!options.grid.empty()) grids.emplace(options.grid == "-" ? fs::path() : options.grid);
   if (!options.stages.empty()) Outputs::remove_sweeps(options.stages);
   std::size_t sweeps = 0;
-  bool has_grid = false;
+  bool has_grid = false, has_turn = false;
   capture.play([&](const Sweep& sweep) {
     const ObstacleList& list = pipeline.process(sweep);
     if (!sweep.ends_turn && !pipeline.has_looked()) return;
+    has_turn = has_turn || sweep.is_whole;
     writer.write(list);
     if (grids && pipeline.grid() != nullptr) {
       grids->write(*pipeline.grid());
@@ -163,13 +169,14 @@ void detect_in_capture(const DetectOptions& options) {
     write_stages(pipeline.detector(), pipeline.ground(), options.stages / name);
     fmt::print(writer.other_output(), "{}: {}\n", name, chain(counts));
   });
-  writer.finish();
-  if (sweeps == 0) {
+  if (!has_turn) {
     throw Failure(options.input.string() + ": nothing was looked at, the lidar " +
-                  (capture.lidar().counters().standing > 0
+                  (sweeps > 0 ? "makes no whole turn in it"
+                   : capture.lidar().counters().standing > 0
                        ? "does not turn"
                        : "has not had a single return (is it covered?)"));
   }
+  writer.finish();
   if (!grids) return;
   grids->finish();
   if (has_grid) return;
