@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -10,6 +9,7 @@
 #include "calibrate/calibration_picture.hpp"
 #include "calibrate/drive_capture.hpp"
 #include "commands.hpp"
+#include "common/fresh_file.hpp"
 #include "common/outputs.hpp"
 #include "read/lidar_capture.hpp"
 #include "scree/motion/calibration.hpp"
@@ -116,12 +116,6 @@ std::string drop_in(const Settings& settings, const Settings& from) {
   return text;
 }
 
-void write_text(const std::string& file, const std::string& text) {
-  std::ofstream stream(file, std::ios::binary);
-  stream << text << std::flush;
-  if (!stream) throw Failure("cannot write " + file);
-}
-
 void calibrate_capture(const CalibrateOptions& options) {
   options.outputs.require_free({options.out, options.picture}, {options.capture, options.config});
   if (!options.picture.empty()) require_cairo();
@@ -143,7 +137,7 @@ void calibrate_capture(const CalibrateOptions& options) {
   if (!options.picture.empty()) {
     draw_calibration(drive, set, after).write_png(options.picture);
   }
-  if (!options.out.empty()) write_text(options.out, drop_in(after, set));
+  if (!options.out.empty()) write_whole(options.out, drop_in(after, set));
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "common/fresh_file.hpp"
 
+#include <fstream>
 #include <system_error>
 
 #include "commands.hpp"
@@ -28,6 +29,14 @@ void FreshFile::take_place() {
   fs::rename(fresh_, file_, error);
   if (error) throw Failure("cannot write " + file_.string() + ": " + error.message());
   fresh_ = file_;
+}
+
+void write_whole(const fs::path& file, std::string_view text) {
+  FreshFile fresh(file);
+  std::ofstream stream(fresh.path(), std::ios::binary);
+  stream << text << std::flush;
+  if (!stream) throw Failure("cannot write " + file.string() + ": is the disk full?");
+  fresh.take_place();
 }
 
 }  // namespace scree::cli

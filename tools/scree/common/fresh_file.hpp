@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
 
 namespace scree::cli {
 
@@ -23,5 +24,8 @@ public:
 private:
   std::filesystem::path file_, fresh_;
 };
+
+/// Writes a file that is whole or not there. Throws Failure.
+void write_whole(const std::filesystem::path& file, std::string_view text);
 
 }  // namespace scree::cli

@@ -1,6 +1,7 @@
 #include "draw/drawing.hpp"
 
 #include "commands.hpp"
+#include "common/fresh_file.hpp"
 
 namespace scree::cli {
 
@@ -82,10 +83,12 @@ void Drawing::unclip() {
 }
 
 void Drawing::write_png(const std::filesystem::path& file) {
-  const cairo_status_t status = cairo_surface_write_to_png(surface_.get(), file.c_str());
+  FreshFile fresh(file);
+  const cairo_status_t status = cairo_surface_write_to_png(surface_.get(), fresh.path().c_str());
   if (status != CAIRO_STATUS_SUCCESS) {
     throw Failure("cannot write " + file.string() + ": " + cairo_status_to_string(status));
   }
+  fresh.take_place();
 }
 
 }  // namespace scree::cli

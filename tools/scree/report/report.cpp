@@ -1,10 +1,10 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <filesystem>
-#include <fstream>
 #include <memory>
 
 #include "commands.hpp"
+#include "common/fresh_file.hpp"
 #include "common/outputs.hpp"
 #include "read/lidar_capture.hpp"
 #include "report/gather.hpp"
@@ -58,9 +58,7 @@ void report(const ReportOptions& options) {
     throw Failure(options.input.string() + ": nothing was looked at, there is no list");
   if (!truth.empty()) data.compare_with(value_or_fail(read_truth(truth)));
   const std::string page = report_page(data.title + " - Scree", data.pack());
-  std::ofstream file(options.out, std::ios::binary);
-  file << page;
-  if (!file.flush()) throw Failure("cannot write " + options.out.string());
+  write_whole(options.out, page);
   fmt::print("{}: {} lists, {:.1f} MB\n", options.out.string(), data.lists().size(),
              static_cast<double>(page.size()) * 1e-6);
 }
