@@ -18,6 +18,8 @@ constexpr std::int64_t drift(std::int64_t elapsed_ns) {
 constexpr std::int64_t kTooEarly = 50 * kMillisecond;
 /// ... and so has one this much after it, whatever delays a busy host may have.
 constexpr std::int64_t kTooLate = kSecond;
+/// Nothing waits in a buffer for as long.
+constexpr std::int64_t kLongestWait = 600 * kSecond;
 /// A device whose clock went back by more than packets overtake each other has started over.
 constexpr std::int64_t kBackwards = 50 * kMillisecond;
 /// Packets that tell of another clock must agree within this ...
@@ -77,7 +79,8 @@ bool DeviceClock::update(std::int64_t device_ns, std::int64_t arrival_ns) {
 
   const bool is_late = excess > kTooLate + leak, is_backwards = device_elapsed < -kBackwards;
   if (is_backwards || is_late || excess < -kTooEarly - leak) {
-    return handle_outlier(device_ns, arrival_ns, is_late && !is_backwards);
+    const bool has_waited = is_late && !is_backwards && excess < kLongestWait;
+    return handle_outlier(device_ns, arrival_ns, has_waited);
   }
   outliers_.reset();
   if (is_late_for_long(sample)) {
@@ -122,7 +125,7 @@ bool DeviceClock::is_late_for_long(const ClockSample& sample) {
   return sample.host_ns() - late_run_->since_ns > kLateFor;
 }
 
-bool DeviceClock::handle_outlier(std::int64_t device_ns, std::int64_t arrival_ns, bool is_late) {
+bool DeviceClock::handle_outlier(std::int64_t device_ns, std::int64_t arrival_ns, bool has_waited) {
   ++implausible_;
   const auto begin = [&] {
     outliers_ = {device_ns, arrival_ns, {device_ns, arrival_ns - device_ns}};
@@ -143,7 +146,7 @@ bool DeviceClock::handle_outlier(std::int64_t device_ns, std::int64_t arrival_ns
     return true;
   }
   // What waited in a buffer is late, and its stamps are right all the same.
-  if (!is_late) {
+  if (!has_waited) {
     anchor_device_ns_ = device_ns;
     anchor_host_ns_ = arrival_ns;
   }

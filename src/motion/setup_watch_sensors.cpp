@@ -127,6 +127,7 @@ SetupWatch::WheelFit SetupWatch::fit_wheel() const {
     std::nth_element(errors.begin(), middle, errors.begin() + fit.windows);
     scale = std::max(kLeastScale, 1.5 * *middle);
     factors = information.ldlt().solve(gradient);
+    fit.turn_deviation = scale * std::sqrt(information.inverse()(1, 1));
   }
   fit.by_way = factors.x();
   fit.by_turn = factors.y();

@@ -9,6 +9,7 @@ import socket
 import struct
 import sys
 
+from pcap_file import ETHERNET, SERIAL, pcap_records, write_pcap
 from programs import SANITIZED, ProgramTest, main
 
 SCREE, DATA = sys.argv[1:3]
@@ -151,6 +152,64 @@ class FieldTest(ProgramTest):
             apart = math.dist(line["pose"]["p"], last["0"]["pose"]["p"])
             self.assertLess(apart, 0.005, step)
             self.assertEqual(len(line["obstacles"]), len(last["0"]["obstacles"]), step)
+
+    def simulated(self):
+        drive = self.path("drive")
+        if not os.path.exists(drive):
+            self.done(SCREE, "simulate", drive, "--scene", "easy", "--seconds", "5")
+        return drive
+
+    def interrupted(self, name, gap, step, of_all):
+        """A drive whose lidar, or of which everything, is away for `gap` seconds while the host's clock
+        is set by `step` seconds."""
+        drive, out = self.simulated(), self.path(name)
+        os.mkdir(out)
+        shutil.copy(os.path.join(drive, "scree.toml"), out)
+        middle = next(pcap_records(os.path.join(drive, "lidar.pcap")))[0] + 25 * 10**8
+
+        def set_clock(stamp):
+            return stamp + (round(step * 1e9) if stamp >= middle else 0)
+
+        def is_away(stamp):
+            return middle <= stamp < middle + gap * 1e9
+
+        for file, link_type in (("lidar.pcap", ETHERNET), ("imu.pcap", SERIAL)):
+            records = [
+                (set_clock(stamp), data)
+                for stamp, data in pcap_records(os.path.join(drive, file), link_type)
+                if not (is_away(stamp) and (of_all or link_type == ETHERNET))
+            ]
+            write_pcap(os.path.join(out, file), records, link_type)
+        with open(os.path.join(drive, "can.log")) as log, open(os.path.join(out, "can.log"), "w") as copy:
+            for line in log:
+                time, rest = line[1:].split(")", 1)
+                stamp = round(float(time) * 1e6) * 1000
+                if not (of_all and is_away(stamp)):
+                    copy.write(f"({set_clock(stamp) / 1e9:.6f}){rest}")
+        return out
+
+    def test_a_step_of_the_hosts_clock_in_a_gap_changes_nothing(self):
+        cases = [(1, 0.5, True), (0.6, -1, True), (1, 2, False)]
+        for gap, step, of_all in cases[:1] if SANITIZED else cases:
+            poses = []
+            for by in (0, step):
+                out = self.interrupted(f"{gap}_{step}_{by}", gap, by, of_all)
+                result = self.done(SCREE, "detect", out)
+                lines = [json.loads(line) for line in result.stdout.splitlines()]
+                stamps = [line["stamp_ns"] for line in lines]
+                self.assertEqual(stamps, sorted(stamps), (gap, by))
+                self.assertEqual("the host's clock was set" in result.stderr, by != 0)
+                poses.append(lines[-1]["pose"]["p"])
+            self.assertLess(math.dist(*poses), 0.02, (gap, step))
+
+    def test_two_recordings_joined_the_wrong_way_round_keep_the_order_of_time(self):
+        drive, joined = self.simulated(), self.path("joined.pcap")
+        records = list(pcap_records(os.path.join(drive, "lidar.pcap")))[:3000]
+        write_pcap(joined, records[1500:] + records[:1500])
+        result = self.done(SCREE, "detect", joined)
+        stamps = [json.loads(line)["stamp_ns"] for line in result.stdout.splitlines()]
+        self.assertEqual(stamps, sorted(stamps))
+        self.assertIn("the host's clock was set by -", result.stderr)
 
     def test_every_command_takes_a_step_of_the_hosts_clock_out(self):
         make = self.field("clock_step/make.py")

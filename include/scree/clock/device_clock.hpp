@@ -102,7 +102,7 @@ private:
     ClockSample least;
   };
 
-  bool handle_outlier(std::int64_t device_ns, std::int64_t arrival_ns, bool is_late);
+  bool handle_outlier(std::int64_t device_ns, std::int64_t arrival_ns, bool has_waited);
   bool is_late_for_long(const ClockSample& sample);
   void accept(const ClockSample& sample);
   void restart(const ClockSample& newest, const ClockSample& least);

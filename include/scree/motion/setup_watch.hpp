@@ -89,6 +89,7 @@ private:
   /// The wheel's way for each metre of the robot's, and for each radian that it turns to the left.
   struct WheelFit {
     double by_way = 0, by_turn = 0;
+    double turn_deviation = 0;  ///< standard deviation of by_turn, metres
     double residual = 0;        ///< share of the wheel's way
     double way = 0, turns = 0;  ///< metres; rad^2
     int windows = 0;

@@ -254,13 +254,17 @@ TEST(WithDbc, UnitsAreComparedWithoutCaseAndBlanks) {
   }
 }
 
-TEST(WithDbc, AScaleThatCannotBeForTheUnitIsRefused) {
+/// Whether a signal's unit and encoder.scale go together.
+bool fits(EncoderKind kind, const char* unit, double scale) {
   const TemporaryFolder folder;
-  const auto is_taken = [&](const char* unit, double scale) {
-    folder.write("robot.dbc",
-                 fmt::format("BO_ 1 M: 8 X\n SG_ S : 0|16@1+ (1,0) [0|1] \"{}\" X\n", unit));
-    return with_dbc(settings_for("M.S", EncoderKind::speed, scale), folder / "robot.toml")
-        .has_value();
+  folder.write("robot.dbc",
+               fmt::format("BO_ 1 M: 8 X\n SG_ S : 0|16@1+ (1,0) [0|1] \"{}\" X\n", unit));
+  return with_dbc(settings_for("M.S", kind, scale), folder / "robot.toml").has_value();
+}
+
+TEST(WithDbc, AScaleThatCannotBeForTheUnitIsRefused) {
+  const auto is_taken = [](const char* unit, double scale) {
+    return fits(EncoderKind::speed, unit, scale);
   };
   for (const char* unit :
        {"mi/h", "knots", "ft/s", "m/min", "rpm", "U/min", "deg/s", "kts", "fps", "inch/s", "um/s",
@@ -277,12 +281,8 @@ TEST(WithDbc, AScaleThatCannotBeForTheUnitIsRefused) {
 }
 
 TEST(WithDbc, AScaleThatCannotBeForTheUnitOfACounterIsRefused) {
-  const TemporaryFolder folder;
-  const auto is_taken = [&](const char* unit, double scale) {
-    folder.write("robot.dbc",
-                 fmt::format("BO_ 1 M: 8 X\n SG_ S : 0|16@1+ (1,0) [0|1] \"{}\" X\n", unit));
-    return with_dbc(settings_for("M.S", EncoderKind::counter, scale), folder / "robot.toml")
-        .has_value();
+  const auto is_taken = [](const char* unit, double scale) {
+    return fits(EncoderKind::counter, unit, scale);
   };
   for (const char* unit : {"inch", "ft", "mi", "deg", "°", "mm", "ticks", "m/s"}) {
     EXPECT_FALSE(is_taken(unit, 1)) << unit;

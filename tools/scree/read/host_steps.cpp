@@ -41,17 +41,13 @@ public:
     if (packets_++ == 0) first_arrival_ns_ = arrival_ns;
     if (arrival_ns != first_arrival_ns_) has_times_ = true;
     if (last_) {
-      const std::int64_t elapsed = wrapped(device_ns - last_->device_ns);
-      // A device that was away or has started anew says nothing.
-      if (elapsed <= 0 || elapsed > kLongestPause) {
-        jump_.reset();
-        usual_ = {};
-        last_.reset();
+      if (const auto elapsed = elapsed_since(*last_, arrival_ns, device_ns)) {
+        running_ns_ += *elapsed;
+        notice(arrival_ns);
       } else {
-        running_ns_ += elapsed;
+        begin_anew(arrival_ns);
       }
     }
-    if (last_) notice(arrival_ns);
     if (!jump_) usual_.add(arrival_ns - running_ns_, running_ns_);
     last_ = Packet{arrival_ns, device_ns};
   }
@@ -66,13 +62,16 @@ public:
     constexpr std::int64_t kLongestDelay = kSecond;
     if (jump_) {
       const std::int64_t by_ns = jump_->delay.get() - usual_.get();
-      if (by_ns < 0 || by_ns > kLongestDelay) steps_.push_back({jump_->before_ns, by_ns});
+      if (by_ns < 0 || by_ns > kLongestDelay) {
+        steps_.push_back({jump_->before_ns, jump_->after_ns, by_ns});
+      }
     }
     return std::move(steps_);
   }
 
 private:
-  static constexpr std::int64_t kLongestPause = 500 * kMillisecond;
+  static constexpr std::int64_t kLongestPause = 60 * kSecond;
+  static constexpr std::int64_t kShortPause = 500 * kMillisecond;
   static constexpr std::int64_t kLeastJump = 30 * kMillisecond;
   static constexpr std::int64_t kCertainAfter = 300 * kMillisecond;
 
@@ -80,25 +79,49 @@ private:
     std::int64_t arrival_ns, device_ns;
   };
   struct Jump {
-    std::int64_t before_ns, since_ns;  // the last arrival; by the device
+    std::int64_t before_ns, after_ns;  // the arrivals on either side
+    std::int64_t since_ns;             // by the device
     LeastDelay delay;
   };
 
   static std::int64_t wrapped(std::int64_t elapsed_ns) {
     return (elapsed_ns % velodyne::kHourNs + velodyne::kHourNs) % velodyne::kHourNs;
   }
+  /// How much time went by for the device; nothing where it has started anew, or one packet has
+  /// overtaken another.
+  static std::optional<std::int64_t> elapsed_since(const Packet& last, std::int64_t arrival_ns,
+                                                   std::int64_t device_ns) {
+    const std::int64_t elapsed = wrapped(device_ns - last.device_ns);
+    if (elapsed == 0 || elapsed > kLongestPause) return std::nullopt;
+    const std::int64_t pause_ns = arrival_ns - last.arrival_ns, by_ns = pause_ns - elapsed;
+    if (elapsed <= kShortPause) return elapsed;
+    // Its clock was set, for one by GPS, while the packets went on.
+    constexpr std::int64_t kNoPause = 20 * kMillisecond;
+    if (pause_ns >= 0 && pause_ns < kNoPause) return std::nullopt;
+    // In a pause its clock may have gone round: no step is taken for whole hours ahead.
+    if (by_ns <= 0) return elapsed;
+    return elapsed + (by_ns + velodyne::kHourNs / 2) / velodyne::kHourNs * velodyne::kHourNs;
+  }
+  /// A device that was away or has started anew says nothing. Only that no time runs back.
+  void begin_anew(std::int64_t arrival_ns) {
+    constexpr std::int64_t kBack = 100 * kMillisecond;
+    const std::int64_t by_ns = arrival_ns - last_->arrival_ns;
+    if (by_ns < -kBack) steps_.push_back({last_->arrival_ns, arrival_ns, by_ns});
+    jump_.reset();
+    usual_ = {};
+  }
   /// Packets that a busy host held up come with the next ones; after a step all are as late.
   void notice(std::int64_t arrival_ns) {
     const std::int64_t delay = arrival_ns - running_ns_;
     if (!jump_) {
       if (std::abs(delay - usual_.get()) < kLeastJump) return;
-      jump_ = {last_->arrival_ns, running_ns_, {}};
+      jump_ = {last_->arrival_ns, arrival_ns, running_ns_, {}};
     }
     jump_->delay.add(delay, running_ns_);
     const std::int64_t by_ns = jump_->delay.get() - usual_.get();
     if (std::abs(by_ns) < kLeastJump) return jump_.reset();
     if (running_ns_ - jump_->since_ns < kCertainAfter) return;
-    steps_.push_back({jump_->before_ns, by_ns});
+    steps_.push_back({jump_->before_ns, jump_->after_ns, by_ns});
     usual_ = jump_->delay;
     jump_.reset();
   }
@@ -149,9 +172,12 @@ void say(const HostSteps& steps) {
 std::int64_t SteadyTime::operator()(std::int64_t time_ns) {
   while (passed_ < steps_.size()) {
     const HostStep& step = steps_[passed_];
-    // Between the time before a step ahead and that after it there is no record.
-    const bool is_passed = step.by_ns > 0 ? time_ns > step.before_ns + step.by_ns / 2
-                                          : last_ns_ && time_ns < *last_ns_ + step.by_ns / 2;
+    // A step shows itself in each file as a jump, unless nothing was written meanwhile.
+    const std::int64_t jump = last_ns_ ? time_ns - *last_ns_ : 0;
+    const std::int64_t lidar_jump = step.after_ns - step.before_ns;
+    const bool jumps = step.by_ns > 0 ? time_ns > step.before_ns && jump > step.by_ns / 2
+                                      : jump < std::max(step.by_ns, lidar_jump) / 2;
+    const bool is_passed = jumps || (lidar_jump > 0 && time_ns >= step.after_ns);
     if (!is_passed) break;
     set_by_ns_ += step.by_ns;
     ++passed_;

@@ -13,7 +13,8 @@ namespace scree::cli {
 
 /// The host's clock was set while a capture was recorded.
 struct HostStep {
-  std::int64_t before_ns = 0;  ///< the last time before it
+  std::int64_t before_ns = 0;  ///< the lidar's last time before it ...
+  std::int64_t after_ns = 0;   ///< ... and the first after it
   std::int64_t by_ns = 0;      ///< ahead, or back below zero
 };
 using HostSteps = std::vector<HostStep>;
