@@ -9,8 +9,11 @@ namespace {
 
 // What is sure of simulated right drives stays within 0.03 s.
 constexpr double kLateDelay = 0.06, kRightDelay = 0.04;  // seconds
-constexpr double kClearDeviations = 4;                   // standard deviations ...
-constexpr double kMostDeviation = 0.025;                 // ... of so many seconds
+// Where the wheel has only sped up, or only slowed down, as much comes of a lidar that lost its
+// way.
+constexpr double kLateOneWay = 0.12, kLeastBalance = 0.1;  // seconds; share
+constexpr double kClearDeviations = 4;                     // standard deviations ...
+constexpr double kMostDeviation = 0.025;                   // ... of so many seconds
 constexpr double kMostUnexplained = 0.5;
 constexpr int kFewestWindows = 6;
 
@@ -26,16 +29,18 @@ SetupWatch::DelayFit SetupWatch::Lags::fit(double noise) const {
   DelayFit fit;
   double scale = 0;
   for (int round = 0; round < kRounds; ++round) {
-    double information = 0, sum = 0, all = 0;
+    double information = 0, ahead = 0, sum = 0, all = 0;
     std::array<double, kMost> errors{};
     for (std::size_t i = 0; i < count_; ++i) {
       const double error = behind_[i] - fit.delay * gain_[i];
       const double weight = round == 0 ? 1 : 1 / (1 + error * error / (scale * scale));
       information += weight * gain_[i] * gain_[i];
+      if (gain_[i] > 0) ahead += weight * gain_[i] * gain_[i];
       sum += weight * gain_[i] * behind_[i];
       all += weight * behind_[i] * behind_[i];
     }
     if (information <= 0) return {};
+    fit.balance = std::min(ahead, information - ahead) / information;
     fit.delay = sum / information;
     for (std::size_t i = 0; i < count_; ++i) {
       errors[i] = std::abs(behind_[i] - fit.delay * gain_[i]);
@@ -88,7 +93,11 @@ SetupWatch::Verdict SetupWatch::judge_encoder_delay(const WheelFit& wheel) const
     lags.add(wheel.by_way * way + wheel.by_turn * seen.turn.z() - seen.wheel,
              seen.wheel_gain / SetupWindow::kBefore);
   }
-  return judge_delay(lags.fit(kNoise), SetupFault::encoder_delay, encoder_delay_);
+  const DelayFit fit = lags.fit(kNoise);
+  const bool is_one_way = fit.balance < kLeastBalance;
+  if (is_one_way && std::abs(fit.delay) >= kLateDelay && std::abs(fit.delay) < kLateOneWay)
+    return {};
+  return judge_delay(fit, SetupFault::encoder_delay, encoder_delay_);
 }
 
 }  // namespace scree

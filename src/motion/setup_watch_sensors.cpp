@@ -157,11 +157,16 @@ SetupWatch::Verdict SetupWatch::judge_encoder_scale(const WheelFit& fit) const {
 SetupWatch::Verdict SetupWatch::judge_encoder_place(const WheelFit& fit) const {
   constexpr double kLeastTurns = 0.3;                           // rad^2
   constexpr double kOff = 0.2, kRight = 0.12, kFarthest = 2.5;  // metres
+  constexpr double kDeviations = 2;
   if (fit.windows < kLeastWindows || fit.turns < kLeastTurns) return {};
   if (fit.residual > kMostResidual || std::abs(fit.by_way - 1) > kMostResidual) return {};
   const double y = -fit.by_turn / fit.by_way, off = y - encoder_place_.y();
   if (std::abs(off) > kFarthest) return {};
-  if (std::abs(off) < kOff) return {std::abs(off) < kRight ? Word::right : Word::unknown, {}};
+  // A lidar that loses its way now and then tells a place that scatters.
+  const double doubt = kDeviations * fit.turn_deviation / std::abs(fit.by_way);
+  if (std::abs(off) < kOff + doubt) {
+    return {std::abs(off) < kRight ? Word::right : Word::unknown, {}};
+  }
   return {Word::wrong,
           {.fault = SetupFault::encoder_place,
            .off = -off,

@@ -98,6 +98,7 @@ private:
   /// How much later a sensor is than the lidar, seconds.
   struct DelayFit {
     double delay = 0, deviation = 0;
+    double balance = 0;      ///< share of the rarer direction of gains in what tells the delay
     double unexplained = 1;  ///< share of the squares of what the sensor is behind
   };
   /// What a sensor is behind the lidar, and what it gains in a second.
