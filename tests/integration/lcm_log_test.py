@@ -129,7 +129,8 @@ class LcmLogTest(ProgramTest):
             program.communicate(timeout=PATIENCE)
 
         elsewhere = f"udpm://239.255.76.67:{free_port()}?ttl=0"
-        watch = self.start(SCREE, "watch", "--url", elsewhere, "--json", "--count", "5",
+        # More lists than the log has: of the first round it may miss those before it listens.
+        watch = self.start(SCREE, "watch", "--url", elsewhere, "--json", "--count", "30",
                            "--seconds", str(PATIENCE))  # fmt: skip
         health = self.start(SCREE, "watch", "--url", elsewhere)
         again = []
