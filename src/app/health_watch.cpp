@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "scree/core/ipv4.hpp"
+#include "scree/drivers/velodyne/position_packet.hpp"
 #include "scree/sync/sync_buffer.hpp"
 
 namespace scree {
@@ -143,9 +144,7 @@ SensorStatus HealthWatch::status_of(const LidarStatus& lidar, std::int64_t now_n
   SensorStatus status;
   status.source = sender_;
   if (sends_position_only(lidar, now_ns)) {
-    status.advice =
-        "its position packets come, so power and cable are right: are its lasers off, does its "
-        "motor turn, is lidar.port its data port?";
+    status.advice = fmt::format("its position packets come, {}", velodyne::kPositionAlone);
   }
   status.last_heard_ns = lidar.last_datagram_ns;
   status.last_message_ns = lidar.last_packet_ns;

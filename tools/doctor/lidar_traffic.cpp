@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "scree/core/ipv4.hpp"
+#include "scree/drivers/velodyne/position_packet.hpp"
 #include "scree/drivers/velodyne/wire.hpp"
 
 namespace scree {
@@ -71,10 +72,8 @@ std::string nothing_came(const LidarSettings& lidar, const LidarTraffic& traffic
     if (std::string why = why_not_heard(lidar, traffic); !why.empty()) return why;
   }
   if (traffic.position_packets > 0) {
-    return fmt::format(
-        "nothing came to UDP port {}, but position packets come to {}, so power and cable are "
-        "right: are its lasers off, does its motor turn, is lidar.port its data port?",
-        lidar.port, lidar.position_port);
+    return fmt::format("nothing came to UDP port {}, but position packets come to {}, {}",
+                       lidar.port, lidar.position_port, velodyne::kPositionAlone);
   }
   return fmt::format(
       "nothing came to UDP port {} in {:g} s: check the sensor's power and cable, and "

@@ -70,11 +70,16 @@ function pictureOf(bright, columns, rows) {
 
 const newCanvas = (width, height) => Object.assign(document.createElement('canvas'), { width, height });
 
+function canvasOf(picture) {
+  const canvas = newCanvas(picture.width, picture.height);
+  canvas.getContext('2d').putImageData(picture, 0, 0);
+  return canvas;
+}
+
 /** The ground of a report, ready to be drawn. */
 function drawnGround(ground) {
   const { x, y, cell, columns, rows, heights } = ground;
-  const image = newCanvas(rows, columns);
-  image.getContext('2d').putImageData(pictureOf(hillshade(heights, columns, rows, cell), columns, rows), 0, 0);
+  const image = canvasOf(pictureOf(hillshade(heights, columns, rows, cell), columns, rows));
   return { x, y, width: columns * cell, height: rows * cell, image };
 }
 

@@ -198,9 +198,7 @@ function unknownImage({ state, columns, rows }) {
   state.forEach((cell, i) => {
     if (cell === 0) pixels[(columns - 1 - i % columns) * rows + rows - 1 - Math.floor(i / columns)] = tint;
   });
-  const canvas = newCanvas(rows, columns);
-  canvas.getContext('2d').putImageData(image, 0, 0);
-  return canvas;
+  return canvasOf(image);
 }
 
 /** 1, 2 or 5 times a power of ten, at least so long. */
