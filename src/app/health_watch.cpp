@@ -33,8 +33,8 @@ void add_refused(const Names& names, const Reasons& reasons, const Counts& count
   }
 }
 
-/// Whether the lidar is there and sends, but no data packets.
-bool sends_position_only(const LidarStatus& lidar, std::int64_t now_ns) {
+/// Whether position packets come.
+bool sends_position(const LidarStatus& lidar, std::int64_t now_ns) {
   constexpr std::int64_t kRecent = 500'000'000;
   return lidar.last_position_ns != 0 && now_ns - lidar.last_position_ns < kRecent;
 }
@@ -143,9 +143,7 @@ void HealthWatch::name_senders(const LidarStatus& lidar) {
 SensorStatus HealthWatch::status_of(const LidarStatus& lidar, std::int64_t now_ns) const {
   SensorStatus status;
   status.source = sender_;
-  if (sends_position_only(lidar, now_ns)) {
-    status.advice = fmt::format("its position packets come, {}", velodyne::kPositionAlone);
-  }
+  if (sends_position(lidar, now_ns)) status.advice = velodyne::kPositionAlone;
   status.last_heard_ns = lidar.last_datagram_ns;
   status.last_message_ns = lidar.last_packet_ns;
   status.messages = lidar.lidar.accepted;
@@ -192,7 +190,7 @@ SensorStatus HealthWatch::status_of(const EncoderStatus& encoder) const {
 std::string HealthWatch::blind_reason(std::int64_t now_ns, const LidarStatus& lidar,
                                       std::int8_t state, const DetectorStatus& detector) const {
   const std::string_view position =
-      sends_position_only(lidar, now_ns) ? ", but position packets come" : "";
+      sends_position(lidar, now_ns) ? ", but position packets come" : "";
   switch (state) {
     case sensor_health_t::NEVER_SEEN:
       return lidar.data_port.foreign == 0 ? fmt::format("nothing has come on {}{}", port_, position)

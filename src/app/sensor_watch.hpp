@@ -26,7 +26,7 @@ struct SensorStatus {
   static constexpr std::size_t kMostReasons = 24;
 
   std::string_view source;
-  std::string advice;                ///< what to look at when it is silent; empty: as always
+  std::string_view advice;           ///< what to look at when it is silent; empty: as always
   std::int64_t last_heard_ns = 0;    ///< anything at all
   std::int64_t last_message_ns = 0;  ///< understood
   std::uint64_t messages = 0, lost = 0, kernel_drops = 0;
@@ -70,7 +70,7 @@ private:
   std::int8_t state_at(std::int64_t now_ns, const SensorStatus& status) const;
   void update_rate(std::int64_t now_ns, const SensorStatus& status, sensor_health_t& health);
   std::string_view advice(const SensorStatus& status) const {
-    return status.advice.empty() ? terms_.advice : status.advice;
+    return status.advice.empty() ? std::string_view(terms_.advice) : status.advice;
   }
   LogLine line_of(std::int64_t now_ns, const SensorStatus& status, const sensor_health_t& health,
                   std::int8_t before) const;

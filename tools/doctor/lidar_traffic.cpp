@@ -72,8 +72,8 @@ std::string nothing_came(const LidarSettings& lidar, const LidarTraffic& traffic
     if (std::string why = why_not_heard(lidar, traffic); !why.empty()) return why;
   }
   if (traffic.position_packets > 0) {
-    return fmt::format("nothing came to UDP port {}, but position packets come to {}, {}",
-                       lidar.port, lidar.position_port, velodyne::kPositionAlone);
+    return fmt::format("nothing came to UDP port {}, but on {} {}", lidar.port, lidar.position_port,
+                       velodyne::kPositionAlone);
   }
   return fmt::format(
       "nothing came to UDP port {} in {:g} s: check the sensor's power and cable, and "

@@ -31,8 +31,8 @@ struct PositionPacket {
 
 /// What is to be looked at where position packets come, but no data packets.
 inline constexpr std::string_view kPositionAlone =
-    "so power and cable are right: are its lasers off, does its motor turn, is lidar.port its data "
-    "port?";
+    "its position packets come, so power and cable are right: are its lasers off, does its motor "
+    "turn, is lidar.port its data port?";
 
 /// Nothing when the datagram is not 512 bytes long. Any bytes are safe.
 std::optional<PositionPacket> parse_position_packet(Bytes datagram);
