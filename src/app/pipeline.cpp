@@ -158,7 +158,11 @@ void Pipeline::follow_motion(const Sweep& sweep) {
   const bool goes_on =
       motion_ == before && (follows || sensors_->has_motion()) && !starts_over(sweep, follows);
   if (motion_ != nullptr && has_map_ && !goes_on) {
-    mapper_->restart();
+    if (motion_ != before && before != nullptr && follows) {
+      mapper_->change_sensors();
+    } else {
+      mapper_->restart();
+    }
     clear_tracks();
   } else if (stands_in && !sensors_->has_motion() && stand_in_->settles()) {
     mapper_->forget_ground();

@@ -66,9 +66,12 @@ bool is_still(const MotionStep& step) {
 
 void PoseFilter::start(const MotionStep& step) {
   started_ = true;
-  level_ = exponential({0, 0, -yaw_of(step.attitude)});
+  const double yaw =
+      goes_on_ ? yaw_of(pose_.rotation) - yaw_of(step.begin_attitude) : -yaw_of(step.attitude);
+  level_ = exponential({0, 0, yaw});
   attitude_ = step.attitude;
-  pose_ = {Eigen::Vector3d::Zero(), level_ * step.attitude};
+  if (goes_on_) pose_.translation += level_ * step.displacement;
+  pose_.rotation = level_ * step.attitude;
   knew_attitude_ = step.knows_attitude;
   covariance_.setZero();
   covariance_(3, 3) = covariance_(4, 4) = square(knew_attitude_ ? kTilt : kUnknownTilt);

@@ -12,7 +12,9 @@ namespace {
 constexpr std::int64_t kWindowNs = 250'000'000;
 constexpr std::int64_t kWheelNs = 200'000'000;  // so late the wheel's samples come at most
 constexpr double kGap = 0.15;                   // seconds without a sample: it begins anew
-constexpr double kLevelled = 0.02;              // rad: the deviation from which on it answers
+constexpr std::int64_t kFirstNs = 3'000'000'000;
+constexpr double kLevelled = 0.02;        // rad: the deviation from which on it answers ...
+constexpr double kFirstLevelled = 0.012;  // ... in the first time: a map begins upright or never is
 
 // Standard deviations.
 constexpr double kFirstTilt = 0.3;     // by one sample's specific force, rad
@@ -46,18 +48,21 @@ bool AttitudeFilter::complete(ImuSample& sample, const Speed& speed) {
   if (sample.has_rate) turn(sample);
   if (sample.has_acceleration) push(sample.acceleration, sample.t_ns);
   if (waits_ && sample.t_ns - end_.t_ns >= kWheelNs) close_window(speed);
+  const double limit = sample.t_ns - begin_ns_ < kFirstNs ? kFirstLevelled : kLevelled;
   const bool is_known = is_level_ && sample.t_ns - begin_ns_ >= kWithoutNs &&
-                        covariance_(0, 0) + covariance_(1, 1) < 2 * kLevelled * kLevelled;
+                        covariance_(0, 0) + covariance_(1, 1) < 2 * limit * limit;
   if (!sample.has_rate || !is_known) return false;
   sample.orientation = orientation_;
   sample.rate = rate_;
   sample.has_orientation = true;
+  answers_ = true;
   return true;
 }
 
 /// Should it be the last one.
 void AttitudeFilter::go_on_from(const ImuSample& sample) {
   restart();
+  answers_ = false;
   orientation_ = sample.orientation.normalized();
   rate_ = sample.rate;
   has_turned_ = sample.has_rate;

@@ -101,6 +101,12 @@ void Mapper::restart() {
   forget_ground();
 }
 
+void Mapper::change_sensors() {
+  const Pose here = filter_.pose();
+  restart();
+  filter_ = PoseFilter(here);
+}
+
 void Mapper::forget_ground() {
   surfels_.clear();
   map_.clear();

@@ -24,8 +24,13 @@ public:
   using Errors = Eigen::Matrix<double, kErrors, 1>;
   using Covariance = Eigen::Matrix<double, kErrors, kErrors>;
 
-  /// Starts at the origin with the yaw of `attitude` as zero, or, later, takes a new attitude of
-  /// the `level` frame at the same pose.
+  PoseFilter() = default;
+  /// Goes on from a pose, by sensors with another level frame. @param pose where the first step
+  /// begins; its yaw holds, its vertical does not
+  explicit PoseFilter(const Pose& pose) : pose_(pose), goes_on_(true) {}
+
+  /// Starts at the origin with the yaw of `attitude` as zero, unless it goes on from a pose. Later
+  /// it takes a new attitude of the `level` frame at the same pose.
   void predict(const MotionStep& step);
 
   /// Begins an iterated update.
@@ -77,7 +82,7 @@ private:
   double scale_ = 0, drift_ = 0;
   Covariance covariance_ = Covariance::Zero();
   // While the IMU is silent.
-  bool knew_attitude_ = false, has_known_attitude_ = false, started_ = false;
+  bool knew_attitude_ = false, has_known_attitude_ = false, started_ = false, goes_on_ = false;
   Eigen::Quaterniond level_before_ = Eigen::Quaterniond::Identity();
   double tilt_before_ = 0, yaw_before_ = 0;  // variances
   double silent_s_ = 0;

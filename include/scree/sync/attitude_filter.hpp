@@ -20,6 +20,10 @@ public:
   /// high rate between, without.
   static constexpr std::int64_t kWithoutNs = 500'000'000;
 
+  /// How much more than those of an IMU the turns between its orientations err: standard deviation,
+  /// rad in a square root of a second. Chosen on simulated drives.
+  static constexpr double kWalk = 0.006;
+
   /// Speed of the robot along its x axis at an instant, m/s; nothing where that is not known.
   using Speed = std::function<std::optional<double>(std::int64_t t_ns)>;
 
@@ -31,6 +35,8 @@ public:
   /// @param speed is asked for instants some 0.2 s before the sample
   /// @return whether the sample now has one; else it is of no use
   bool complete(ImuSample& sample, const Speed& speed);
+  /// Whether the latest orientation was its own.
+  bool answers() const { return answers_; }
   /// The clock was set back, or the IMU was silent.
   void restart();
 
@@ -60,6 +66,7 @@ private:
       Eigen::Matrix<double, kStates, kStates>::Zero();
   std::int64_t begin_ns_ = 0, turned_ns_ = 0, pushed_ns_ = 0;
   bool has_turned_ = false, is_level_ = false, has_bound_ = false, waits_ = false;
+  bool answers_ = false;
   Bound begin_, end_;  // of the last window, which waits for the wheel; equal: there is none yet
   Eigen::Vector3d force_ = Eigen::Vector3d::Zero();  // integral since end_
   std::optional<double> speed_;                      // at end_, or at begin_ while it waits

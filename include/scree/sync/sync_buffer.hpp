@@ -81,7 +81,9 @@ public:
   std::int64_t imu_restart_ns() const { return imu_restart_ns_; }
   /// How much more than those of an IMU the turns between its attitudes err: standard deviation,
   /// rad in a square root of a second.
-  double attitude_walk() const { return attitude_walk_; }
+  double attitude_walk() const {
+    return attitude_.answers() ? AttitudeFilter::kWalk : attitude_walk_;
+  }
   /// Samples that found no room, and samples that gather() refused. Any thread.
   std::uint64_t dropped() const { return dropped_.load(std::memory_order_relaxed); }
   std::uint64_t late() const { return late_.load(std::memory_order_relaxed); }

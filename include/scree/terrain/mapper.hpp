@@ -43,6 +43,9 @@ public:
   bool registers() const { return registers_; }
   /// Begins anew, at the origin: what comes next does not follow on what came before.
   void restart();
+  /// Other sensors tell the motion from now on. Forgets the ground, whose vertical may be another,
+  /// and goes on from where it is.
+  void change_sensors();
   /// Forgets the ground, and goes on from where it is.
   void forget_ground();
   /// Takes a sweep by itself, as if the robot stood still. The map stays as it is.

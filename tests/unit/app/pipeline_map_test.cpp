@@ -42,19 +42,24 @@ TEST_F(PipelineMap, PutsTheGroundTogetherByTheLidarAlone) {
   EXPECT_LT((moved.translation - truth.translation).norm(), 0.05);
 }
 
-/// odom begins where it is first heard.
-TEST_F(PipelineMap, BeginsAnewWhenAMotionSensorSpeaks) {
+/// odom is one frame from the first pose on.
+TEST_F(PipelineMap, GoesOnInTheSameFrameWhenAMotionSensorSpeaks) {
   ground_.roughness = 1.5;
-  go(20, false);
+  const Pose before = go(20, false).pose, begin = drive_.base(kSweep * sweeps_);
   EXPECT_TRUE(pipeline_.uses_map());
-  const ObstacleList& first = go(1);
+  const Pose first = test::relative(before, go(1).pose);
   EXPECT_TRUE(pipeline_.uses_map());
-  EXPECT_LT(first.pose.translation.norm(), 0.15);
+  const Pose truth = test::relative(begin, drive_.base(kSweep * sweeps_));
+  EXPECT_LT((first.translation - truth.translation).norm(), 0.02);
+  EXPECT_NEAR(yaw_of(first.rotation), yaw_of(truth.rotation), 0.005);
   const ObstacleList& list = go(10);
   EXPECT_EQ(list.stamp_ns, sweep_.end_ns);
   const Pose pose = pipeline_.mapper().to_odom() * pipeline_.mapper().pose();
   EXPECT_EQ(list.pose.translation, pose.translation);
-  EXPECT_NEAR(list.pose.translation.norm(), 1, 0.15);
+  const Pose moved = test::relative(before, list.pose);
+  const Pose true_way = test::relative(begin, drive_.base(kSweep * sweeps_));
+  EXPECT_GT(true_way.translation.norm(), 1);
+  EXPECT_LT((moved.translation - true_way.translation).norm(), 0.05);
   EXPECT_GT(pipeline_.ground().size(), 1000U);
   EXPECT_EQ(&pipeline_.ground(), &pipeline_.mapper().map().cloud());
   go(2, false);

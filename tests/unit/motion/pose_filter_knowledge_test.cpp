@@ -98,6 +98,18 @@ Pose silence(double wrong, double yaw, bool was_known, PoseFilter& filter, doubl
   return before;
 }
 
+TEST(PoseFilterKnowledge, GoesOnFromAPoseByAnotherImu) {
+  const Pose here{{3, -2, 0.5}, from_roll_pitch_yaw(0.1, 0.05, 0.7)};
+  PoseFilter filter(here);
+  filter.predict(step_of(from_roll_pitch_yaw(0, 0.02, -2), from_roll_pitch_yaw(0, 0.02, -1.9), 1));
+  const Pose& pose = filter.pose();
+  EXPECT_NEAR(yaw_of(pose.rotation), 0.8, 1e-9);
+  EXPECT_LT(pose.rotation.angularDistance(from_roll_pitch_yaw(0, 0.02, 0.8)), 1e-9);
+  const Eigen::Vector3d way = pose.translation - here.translation;
+  EXPECT_NEAR(way.norm(), 1, 1e-9);
+  EXPECT_NEAR(std::atan2(way.y(), way.x()), 0.75, 1e-3);
+}
+
 TEST(PoseFilterKnowledge, AnImuThatGoesOnAfterSilenceIsBelieved) {
   PoseFilter filter;
   const Pose before = silence(0.2, 0, true, filter);
