@@ -33,10 +33,12 @@ void add_refused(const Names& names, const Reasons& reasons, const Counts& count
   }
 }
 
-/// Whether position packets come.
-bool sends_position(const LidarStatus& lidar, std::int64_t now_ns) {
-  constexpr std::int64_t kRecent = 500'000'000;
-  return lidar.last_position_ns != 0 && now_ns - lidar.last_position_ns < kRecent;
+/// Whether position packets come, and came on when the data packets ended: a cable that is pulled
+/// ends both.
+bool sends_position_alone(const LidarStatus& lidar, std::int64_t now_ns) {
+  constexpr std::int64_t kRecent = 500'000'000, kTogether = 50'000'000;
+  return lidar.last_position_ns != 0 && now_ns - lidar.last_position_ns < kRecent &&
+         lidar.last_position_ns - lidar.last_datagram_ns > kTogether;
 }
 
 /// Whether Scree has asked the IMU for messages without an orientation.
@@ -143,7 +145,7 @@ void HealthWatch::name_senders(const LidarStatus& lidar) {
 SensorStatus HealthWatch::status_of(const LidarStatus& lidar, std::int64_t now_ns) const {
   SensorStatus status;
   status.source = sender_;
-  if (sends_position(lidar, now_ns)) status.advice = velodyne::kPositionAlone;
+  if (sends_position_alone(lidar, now_ns)) status.advice = velodyne::kPositionAlone;
   status.last_heard_ns = lidar.last_datagram_ns;
   status.last_message_ns = lidar.last_packet_ns;
   status.messages = lidar.lidar.accepted;
@@ -190,7 +192,7 @@ SensorStatus HealthWatch::status_of(const EncoderStatus& encoder) const {
 std::string HealthWatch::blind_reason(std::int64_t now_ns, const LidarStatus& lidar,
                                       std::int8_t state, const DetectorStatus& detector) const {
   const std::string_view position =
-      sends_position(lidar, now_ns) ? ", but position packets come" : "";
+      sends_position_alone(lidar, now_ns) ? ", but position packets come" : "";
   switch (state) {
     case sensor_health_t::NEVER_SEEN:
       return lidar.data_port.foreign == 0 ? fmt::format("nothing has come on {}{}", port_, position)

@@ -100,6 +100,15 @@ TEST_F(HealthWatchTest, PositionPacketsAloneAreNoMatterOfPowerOrCable) {
   EXPECT_EQ(health_.reason, "no packets on UDP port 2368");
 }
 
+TEST_F(HealthWatchTest, APulledCableEndsPositionPacketsTooAndIsNamed) {
+  drive(50);
+  status_.last_position_ns = now_;
+  EXPECT_THAT(pass(300),
+              AllOf(HasSubstr("no packets on UDP port 2368 any more: check the sensor's"),
+                    Not(HasSubstr("are right"))));
+  EXPECT_EQ(health_.reason, "no packets on UDP port 2368");
+}
+
 TEST_F(HealthWatchTest, OnlyOtherSendersIsSaid) {
   status_.data_port.foreign = 12;
   EXPECT_THAT(pass(100), HasSubstr("not from 192.168.1.201 (12 more"));
