@@ -36,8 +36,8 @@ struct Networks {
 /// obstacle then keeps its id while it moves little from sweep to sweep. Of a turn that has not
 /// ended only the points go into the map, where IMU or encoder say how the robot moves: what moves,
 /// and what corrects the pose, is found at its end. Where a sensor is first heard the map begins
-/// anew; where the lidar's odometry goes on after it did not hold, `odom` does, too. Memory is taken
-/// once, when it is made.
+/// anew; where the lidar's odometry goes on after it did not hold, `odom` does, too. Memory is
+/// taken once, when it is made.
 class Pipeline {
 public:
   /// @param config_file its folder is searched first for the weights files; it may be empty
