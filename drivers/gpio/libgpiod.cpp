@@ -28,8 +28,12 @@ std::optional<unsigned> number_of(const std::string& line) {
   return number;
 }
 
+bool is_forbidden(int error) {
+  return error == EACCES || error == EPERM;
+}
+
 tl::unexpected<Error> no_chip(const std::string& name, int error) {
-  if (error == EACCES || error == EPERM) {
+  if (is_forbidden(error)) {
     return fail("no right to open GPIO chip " + name + " (is this user in the group gpio?)");
   }
   return fail("there is no GPIO chip " + name + " (`gpiodetect` lists them)");
@@ -71,6 +75,12 @@ Result<std::string> holder_of(const std::string& chip_name, const std::string& l
   if (!gpiod_line_is_used(line)) return std::string();
   const char* const holder = gpiod_line_consumer(line);
   return std::string(holder == nullptr ? "the kernel" : holder);
+}
+
+Result<void> check_line(const std::string& chip_name, const std::string& line_name) {
+  const Chip chip(gpiod_chip_open_lookup(chip_name.c_str()));
+  if (!chip) return is_forbidden(errno) ? Result<void>() : no_chip(chip_name, errno);
+  return find_line(chip, line_name) != nullptr ? Result<void>() : no_line(chip_name, line_name);
 }
 
 Result<LineHandle> request(const LineRequest& wanted) {
@@ -161,6 +171,12 @@ Result<std::string> holder_of(const std::string& chip_name, const std::string& l
   if (!line || !gpiod_line_info_is_used(line.get())) return std::string();
   const char* const holder = gpiod_line_info_get_consumer(line.get());
   return std::string(holder == nullptr ? "the kernel" : holder);
+}
+
+Result<void> check_line(const std::string& chip_name, const std::string& line_name) {
+  const Chip chip = open_chip(chip_name);
+  if (!chip) return is_forbidden(errno) ? Result<void>() : no_chip(chip_name, errno);
+  return find_line(chip, line_name) ? Result<void>() : no_line(chip_name, line_name);
 }
 
 struct HeldLine {

@@ -20,6 +20,8 @@ struct LineRequest {
 Result<LineHandle> request(const LineRequest& wanted);
 /// See gpio::holder_of().
 Result<std::string> holder_of(const std::string& chip, const std::string& line);
+/// Whether there is such a line; it is not said where this user may not look.
+Result<void> check_line(const std::string& chip, const std::string& line);
 bool set(HeldLine& line, bool is_on);
 int descriptor_of(const HeldLine& line);
 /// The kernel's stamp of the next edge that waits.

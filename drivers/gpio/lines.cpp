@@ -90,6 +90,18 @@ Result<void> check_name(const std::string& name) {
   return parts ? Result<void>() : fail("\"" + name + "\" " + parts.error().message);
 }
 
+Result<void> check_lines(const GpioSettings& settings) {
+  const std::array named{std::pair("pps", &settings.pps), std::pair("stop", &settings.stop),
+                         std::pair("heartbeat", &settings.heartbeat)};
+  for (const auto& [key, name] : named) {
+    const auto parts = name->empty() ? fail("") : parts_of(*name);
+    if (!parts) continue;
+    const auto there = check_line(parts->chip, parts->line);
+    if (!there) return of_key(key, *name, there.error());
+  }
+  return {};
+}
+
 Result<Lines> Lines::open(const GpioSettings& settings) {
   Lines lines;
   if (!settings.pps.empty()) {

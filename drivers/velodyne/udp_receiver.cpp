@@ -24,7 +24,7 @@ std::string reason_of(int error, const std::string& address, int port) {
       return "UDP port " + std::to_string(port) +
              " is in use by another program (another screed? `ss -ulnp` lists them)";
     case EADDRNOTAVAIL:
-      return "cannot listen on " + where + ": no interface of this computer has that address";
+      return "cannot listen on " + address + ": no interface of this computer has that address";
     case EACCES:
       return "cannot listen on " + where + ": ports below 1024 need the right CAP_NET_BIND_SERVICE";
     default:
@@ -74,6 +74,11 @@ Result<std::uint32_t> sender_address(const std::string& text) {
   if (is_host) return *address;
   return fail("\"" + text +
               "\" is not the IPv4 address of a sender, as 192.168.1.201 is (no name, no port)");
+}
+
+Result<void> check_interface(const std::string& address) {
+  const auto any_port = UdpReceiver::open(address, 0, "");
+  return any_port ? Result<void>() : tl::make_unexpected(any_port.error());
 }
 
 Result<UdpReceiver> UdpReceiver::open(const std::string& address, int port,

@@ -18,6 +18,7 @@
 #include "scree/app/pipeline.hpp"
 #include "scree/clock/clocks.hpp"
 #include "scree/drivers/gpio/lines.hpp"
+#include "scree/drivers/velodyne/udp_receiver.hpp"
 #include "service_manager.hpp"
 #include "supervisor.hpp"
 
@@ -40,12 +41,15 @@ scree::RobotLines robot_lines(scree::gpio::Lines& held) {
   return lines;
 }
 
-/// Checks the configuration and all that it names; nothing is opened or started.
+/// Checks the configuration, all that it names, and that this computer has it; nothing is started.
 scree::Result<void> check(const std::filesystem::path& file) {
   const auto config = scree::RunningConfig::read(file);
   if (!config) return tl::make_unexpected(config.error());
-  const auto networks = scree::load_networks(config->settings(), file);
-  return networks ? scree::Result<void>() : tl::make_unexpected(networks.error());
+  const scree::Settings& settings = config->settings();
+  const auto networks = scree::load_networks(settings, file);
+  if (!networks) return tl::make_unexpected(networks.error());
+  const auto lines = scree::gpio::check_lines(settings.gpio);
+  return lines ? scree::check_interface(settings.lidar.address) : lines;
 }
 
 scree::Result<void> run(const std::filesystem::path& file, const scree::Signals& signals) {

@@ -127,6 +127,19 @@ class ServiceTest(ProgramTest):
                 result = self.run_to_end(SCREED, *arguments, "--config", config)
                 self.assert_fails(result, f"{config}:3: {table}.{key}: ", value)
 
+    def test_check_config_refuses_what_this_computer_has_not(self):
+        for table, key, value in [
+            ("lidar", "address", "192.0.2.77"),
+            ("gpio", "stop", "gpiochip77:3"),
+        ]:
+            config = self.write("elsewhere.toml", f'[{table}]\n{key} = "{value}"\n')
+            said = [
+                self.run_to_end(SCREED, *arguments, "--config", config).stderr.splitlines()[-1]
+                for arguments in [[], ["--check-config"]]
+            ]
+            self.assertIn(value, said[1])
+            self.assertEqual(said[0], said[1])
+
     def test_the_journal_gets_levels(self):
         with open(self.path("log"), "w") as log:
             place = os.fstat(log.fileno())

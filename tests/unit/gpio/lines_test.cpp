@@ -42,6 +42,15 @@ TEST(CheckName, OpensNothing) {
   EXPECT_EQ(check_name("17").error().message, "\"17\" must be CHIP:LINE, as gpiochip0:17 is");
 }
 
+TEST(CheckLines, SaysWhatOpenWouldSay) {
+  EXPECT_TRUE(check_lines({}));
+  for (const auto line : {&GpioSettings::pps, &GpioSettings::stop, &GpioSettings::heartbeat}) {
+    GpioSettings settings;
+    settings.*line = "nochip:4";
+    EXPECT_EQ(check_lines(settings).error().message, error_of(line, "nochip:4"));
+  }
+}
+
 TEST(HolderOf, SaysWhatIsWrongWithAName) {
   EXPECT_THAT(holder_of("nochip:4").error().message, HasSubstr("no GPIO chip nochip"));
   EXPECT_THAT(holder_of("17").error().message, HasSubstr("must be CHIP:LINE"));

@@ -136,6 +136,14 @@ TEST_F(UdpReceiverTest, APortInUseIsOneSentence) {
               AllOf(HasSubstr("port " + std::to_string(first.port())), HasSubstr("in use")));
 }
 
+TEST_F(UdpReceiverTest, AnInterfaceIsLookedForWithoutItsPort) {
+  const UdpReceiver first = open();
+  EXPECT_TRUE(check_interface("0.0.0.0"));
+  EXPECT_TRUE(check_interface("127.0.0.1"));
+  EXPECT_EQ(check_interface("192.0.2.77").error().message,
+            "cannot listen on 192.0.2.77: no interface of this computer has that address");
+}
+
 TEST_F(UdpReceiverTest, AddressesAreChecked) {
   EXPECT_THAT(UdpReceiver::open("192.0.2.77", 0, "").error().message,
               HasSubstr("no interface of this computer"));

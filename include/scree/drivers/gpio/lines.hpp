@@ -61,6 +61,10 @@ Result<std::string> holder_of(const std::string& name);
 /// Whether a text can be the name of a line, or is empty for none; nothing is opened.
 Result<void> check_name(const std::string& name);
 
+/// Whether this computer has the lines that the configuration names, as far as this user may look.
+/// Nothing is changed. One sentence, which names the key, where it has not.
+Result<void> check_lines(const GpioSettings& settings);
+
 /// The lines that the configuration names.
 struct Lines {
   std::optional<PulseInput> pps;

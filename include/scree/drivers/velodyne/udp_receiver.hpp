@@ -14,6 +14,8 @@ namespace scree {
 /// is any. Nothing is opened.
 Result<std::uint32_t> local_address(const std::string& text);
 Result<std::uint32_t> sender_address(const std::string& text);
+/// Whether this computer has an address that open() would listen on. The port is not asked for.
+Result<void> check_interface(const std::string& address);
 
 /// A datagram as the kernel hands it over.
 struct ReceivedDatagram {
