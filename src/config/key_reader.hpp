@@ -8,6 +8,7 @@
 #include <vector>
 #define TOML_EXCEPTIONS 1
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/fmt/ranges.h>
 #include <toml++/toml.h>
 
 #include "mistakes.hpp"
@@ -76,16 +77,16 @@ private:
       return fmt::format("is read only with {}", unread->second);
     }
     if (const auto replacement = replacement_of(name)) return "is gone: " + *replacement;
-    return "is not a setting; the nearest is " + nearest(name, is_table);
-  }
-
-  std::string nearest(std::string_view wanted, bool is_table) const {
-    std::vector<std::string_view> names;
-    for (const std::string& name : known_) {
-      const std::string_view table = std::string_view(name).substr(0, name.rfind('.'));
-      names.push_back(is_table ? table : name);
+    std::set<std::string_view> tables;
+    for (const std::string& key : known_) {
+      tables.insert(std::string_view(key).substr(0, key.rfind('.')));
     }
-    return near_names(wanted, names, 1);
+    const std::vector<std::string_view> names =
+        is_table ? std::vector<std::string_view>(tables.begin(), tables.end())
+                 : std::vector<std::string_view>(known_.begin(), known_.end());
+    const std::string nearest = nearest_name(name, names);
+    if (!nearest.empty()) return "is not a setting; the nearest is " + nearest;
+    return fmt::format("is not a setting; there are those of {}", fmt::join(tables, ", "));
   }
 
   void refuse(const toml::node& node, std::string_view name, std::string_view reason) {

@@ -9,6 +9,8 @@
 namespace scree {
 namespace {
 
+constexpr std::size_t kLongest = 128;  // each distance takes the product of two lengths
+
 char lower(char c) {
   return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
 }
@@ -33,7 +35,6 @@ std::size_t distance(std::string_view a, std::string_view b) {
 
 std::string near_names(std::string_view wanted, const std::vector<std::string_view>& names,
                        std::size_t most) {
-  constexpr std::size_t kLongest = 128;  // each distance takes the product of two lengths
   wanted = wanted.substr(0, kLongest);
   std::set<std::pair<std::size_t, std::string_view>> nearest;
   for (const std::string_view name : names) {
@@ -45,6 +46,11 @@ std::string near_names(std::string_view wanted, const std::vector<std::string_vi
     text += (text.empty() ? "" : ", ") + std::string(name);
   }
   return text;
+}
+
+std::string nearest_name(std::string_view wanted, const std::vector<std::string_view>& names) {
+  const std::string nearest = near_names(wanted, names, 1);
+  return 2 * distance(wanted.substr(0, kLongest), nearest) <= wanted.size() ? nearest : "";
 }
 
 }  // namespace scree

@@ -158,8 +158,25 @@ class CommandLineTest(ProgramTest):
         self.assertIn('no command "detct"; did you mean "detect"?', self.scree("detct", code=2).stderr)
         said = self.scree("detect", "/tmp", "--otu", "x", code=2).stderr
         self.assertIn('detect has no option "--otu"; did you mean "--out"?', said)
+        for words, meant in [
+            (["simulate", self.path("c"), "--scene", "woood"], "did you mean wood?"),
+            (["study", "detecton", "--out", self.path("c")], "did you mean detection?"),
+            (["decode", "/tmp", "--sensor", "imuu"], "did you mean imu?"),
+        ]:
+            self.assertIn(meant, self.scree(*words, code=2).stderr)
+        for words, listed in [
+            (["xyzzy"], "`scree --help`"),
+            (["detect", "/tmp", "--xyzzy"], "`scree detect --help`"),
+        ]:
+            said = self.scree(*words, code=2).stderr
+            self.assertIn(f": {listed} lists them", said)
+            self.assertNotIn("did you mean", said)
         said = self.scree("--hepl", code=2).stderr
         self.assertIn('scree has no option "--hepl"; did you mean "--help"?', said)
+
+    def test_help_is_a_word_too(self):
+        self.assertEqual(self.scree("help").stdout, self.scree("--help").stdout)
+        self.assertEqual(self.scree("help", "detect").stdout, self.scree("detect", "--help").stdout)
 
     def test_words_of_a_choice_stand_in_help_and_errors(self):
         for command, option, word in [("train", "--profile", "sweep"), ("train", "--counts", "log1p"),

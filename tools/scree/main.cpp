@@ -59,6 +59,12 @@ int failed(const std::string& reason) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  // `scree help detect` asks for what `scree detect --help` does.
+  char asks_for_help[] = "--help";
+  if (argc > 1 && argc <= 3 && std::string_view(argv[1]) == "help") {
+    if (argc == 3) argv[1] = argv[2];
+    argv[argc == 3 ? 2 : 1] = asks_for_help;
+  }
   CLI::App app("Obstacle detection for robots on rough ground");
   app.name("scree");
   app.set_version_flag("--version", SCREE_VERSION);

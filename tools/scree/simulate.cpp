@@ -9,6 +9,7 @@
 #include "commands.hpp"
 #include "common/outputs.hpp"
 #include "common/progress.hpp"
+#include "common/usage_error.hpp"
 #include "simulator/capture.hpp"
 #include "simulator/scene.hpp"
 
@@ -178,7 +179,7 @@ void add_simulate(CLI::App& app) {
       ->check(CLI::Range(0.0, 1e15))
       ->capture_default_str();
   command->add_option("--scene", options->scene, "kind of ground [easy; a cloud: like the paper's]")
-      ->check(CLI::IsMember(all_scenes()));
+      ->check(one_of(all_scenes()));
   add_drive(*command, options->capture, cloud);
   add_movers(*command, options->capture.movers, cloud);
   add_imu(*command, options->capture, cloud);

@@ -11,4 +11,8 @@ namespace scree {
 std::string near_names(std::string_view wanted, const std::vector<std::string_view>& names,
                        std::size_t most = 3);
 
+/// The name that a mistyped one was meant to be; empty where more than half of its letters would
+/// have to change.
+std::string nearest_name(std::string_view wanted, const std::vector<std::string_view>& names);
+
 }  // namespace scree

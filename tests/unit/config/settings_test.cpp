@@ -78,6 +78,9 @@ TEST(Settings, MistakesNameFileLineKeyAndWhatIsAccepted) {
                     HasSubstr("lidar.prot is not a setting; the nearest is lidar.port")));
   EXPECT_THAT(error_of("[radar]\nx = 1\n"),
               HasSubstr("radar is not a setting; the nearest is lidar"));
+  EXPECT_THAT(error_of("[wheel]\nx = 1\n"),
+              AllOf(HasSubstr("wheel is not a setting; there are those of "),
+                    HasSubstr(", encoder, "), Not(HasSubstr("nearest"))));
   EXPECT_THAT(error_of("lidar = 3\n"), HasSubstr("lidar is a table"));
   EXPECT_THAT(error_of("[lidar\n"), HasSubstr("robot.toml:1"));
   EXPECT_THAT(error_of("[lidar]\nmin_range = 31\n"), HasSubstr("below lidar.max_range"));

@@ -10,11 +10,19 @@
 namespace scree::cli {
 namespace {
 
+/// The end of a sentence on a word that is not known.
+std::string or_nearest(std::string_view word, const std::vector<std::string>& names,
+                       std::string_view all) {
+  const std::string nearest = nearest_name(word, {names.begin(), names.end()});
+  return nearest.empty() ? fmt::format(": {}", all)
+                         : fmt::format("; did you mean \"{}\"?", nearest);
+}
+
 std::string unknown_command(const CLI::App& app, std::string_view word) {
   std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
-  return fmt::format("there is no command \"{}\"; did you mean \"{}\"?", word,
-                     near_names(word, {names.begin(), names.end()}, 1));
+  return fmt::format("there is no command \"{}\"{}", word,
+                     or_nearest(word, names, "`scree --help` lists them"));
 }
 
 std::string unknown_option(const CLI::App& command, std::string_view word) {
@@ -23,11 +31,23 @@ std::string unknown_option(const CLI::App& command, std::string_view word) {
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
   }
   const std::string_view name = word.substr(0, word.find('='));
-  return fmt::format("{} has no option \"{}\"; did you mean \"{}\"?", command.get_name(), name,
-                     near_names(name, {names.begin(), names.end()}, 1));
+  const std::string all = fmt::format("`scree {} --help` lists them", command.get_name());
+  return fmt::format("{} has no option \"{}\"{}", command.get_name(), name,
+                     or_nearest(name, names, all));
 }
 
 }  // namespace
+
+CLI::Validator one_of(const std::vector<std::string>& words) {
+  CLI::Validator validator = CLI::IsMember(words);
+  validator.operation([is_member = validator, words](std::string& word) {
+    const std::string refused = is_member(word);
+    if (refused.empty()) return refused;
+    const std::string nearest = nearest_name(word, {words.begin(), words.end()});
+    return nearest.empty() ? refused : fmt::format("{}; did you mean {}?", refused, nearest);
+  });
+  return validator;
+}
 
 std::string unknown_word(const CLI::App& app, const CLI::ParseError& error, int argc,
                          const char* const* argv) {

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 namespace scree::cli {
 
@@ -9,5 +10,8 @@ namespace scree::cli {
 /// the error is another one.
 std::string unknown_word(const CLI::App& app, const CLI::ParseError& error, int argc,
                          const char* const* argv);
+
+/// Accepts these words. Help and errors list them, and an error names the nearest.
+CLI::Validator one_of(const std::vector<std::string>& words);
 
 }  // namespace scree::cli

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "commands.hpp"
+#include "common/words.hpp"
 
 namespace scree::cli {
 namespace {
@@ -25,7 +26,7 @@ void add_decode(CLI::App& app) {
   command->add_option("capture", options->capture, "Folder, .pcap, .pcapng or LCM log")->required();
   command->add_option("--sensor", options->sensor, "Which sensor's values")
       ->required()
-      ->check(CLI::IsMember(sensors()));
+      ->check(one_of(names_of(sensors())));
   command->add_option("--out", options->out, "CSV file; standard output when not given");
   command->add_option(
       "--pcd", options->pcd,

@@ -10,6 +10,7 @@
 #include "commands.hpp"
 #include "common/outputs.hpp"
 #include "common/progress.hpp"
+#include "common/usage_error.hpp"
 #include "scree/app/pipeline.hpp"
 #include "simulator/scene.hpp"
 
@@ -172,7 +173,7 @@ void add_study(CLI::App& app) {
   std::vector<std::string> names;
   names.reserve(kStudies.size());
   for (const Study& study : kStudies) names.emplace_back(study.name);
-  command->add_option("NAME", options->name, "see below")->required()->check(CLI::IsMember(names));
+  command->add_option("NAME", options->name, "see below")->required()->check(one_of(names));
   command->add_option("--out", options->out, "folder for table and picture")->required();
   command->add_option("--config", options->config, "configuration; default: the shipped settings")
       ->check(CLI::ExistingFile);
