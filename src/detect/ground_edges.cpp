@@ -12,7 +12,6 @@ namespace {
 constexpr float kLeastStep = 0.15F;    // metres
 constexpr float kLeastSlope = 0.5F;    // of the way to the other level: 27 degrees
 constexpr float kBend = 0.1F;          // metres a metre that ground which is not seen may bend down
-constexpr float kFarthest = 3;         // metres beyond the ground that are looked at
 constexpr float kFarthestStep = 1.5F;  // metres to the other level of a steep step
 constexpr float kClutter = 0.05F;      // metres: what is higher and no ground is an obstacle
 constexpr float kLeastTerrace = 1.5F;  // square metres of level ground above a step

@@ -51,12 +51,12 @@ GroundSurface::GroundSurface(const GroundSurfaceSettings& settings, std::size_t 
       rough_finder_(settings.finder, rough_seen_.capacity()) {}
 
 void GroundSurface::build(PointView points) {
-  fill_raster(points);
+  fill_raster(points, bounds_of(points));
   find_ground();
 }
 
-void GroundSurface::build_roughly(PointView points) {
-  fill_raster(points);
+void GroundSurface::build_roughly(PointView points, const PlaneBounds& bounds) {
+  fill_raster(points, bounds);
   halve();
   rough_finder_.find(rough_raster(), rough_seen_.data(), GroundFinder::Accuracy::rough);
   levels_ = levels_of(rough_finder_, rough_raster());
@@ -85,11 +85,10 @@ LevelRaster GroundSurface::levels_of(const GroundFinder& finder, const GroundRas
           .inverse = 1 / raster.cell_size};
 }
 
-void GroundSurface::fill_raster(PointView points) {
+void GroundSurface::fill_raster(PointView points, const PlaneBounds& bounds) {
   // Cells too small for the density of the points leave the ground in tatters.
   constexpr float kGrowth = 1.25F;
   constexpr int kMostGrowths = 8;  // up to six times the size
-  const PlaneBounds bounds = bounds_of(points);
   float cell_size = settings_.cell_size;
   for (int growth = 0;; ++growth, cell_size *= kGrowth) {
     lay_out(bounds, cell_size);

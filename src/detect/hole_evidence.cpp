@@ -38,14 +38,15 @@ void HoleEvidence::build(const SeenCloud& cloud, const GroundSurface& surface) {
   number_ = 0;
   knows_beams_ = !cloud.origins.empty();
   if (!knows_beams_) return;
-  surface.for_each_height(cloud.points, [&](std::size_t i, float height) {
-    if (!(height <= -kBelow)) return;
-    const Eigen::Vector3f point(cloud.points.x[i], cloud.points.y[i], cloud.points.z[i]);
-    if (point.allFinite()) follow(cloud.origin_of(i), point, surface);
-  });
-  if (!cloud.passing.empty()) find_tops(surface);
   robot_ = cloud.robot.value_or(Eigen::Vector2f::Zero());
   reach_ = cloud.robot ? cloud.reach : std::numeric_limits<float>::infinity();
+  surface.for_each_height(cloud.points, [&](std::size_t i, float height) {
+    const Eigen::Vector3f point(cloud.points.x[i], cloud.points.y[i], cloud.points.z[i]);
+    if (!point.allFinite()) return;
+    if (height <= -kBelow) follow(cloud.origin_of(i), point, surface);
+    follow_over_gap(cloud.origin_of(i), point, surface);
+  });
+  if (!cloud.passing.empty()) find_tops(surface);
   for (const PassingBeam& beam : cloud.passing) follow_passing(beam, surface);
 }
 
@@ -135,6 +136,67 @@ void HoleEvidence::follow(const Eigen::Vector3f& origin, const Eigen::Vector3f& 
     const std::size_t passed = surface.cell_at(at.x(), at.y());
     if (surface.is_ground(passed) || !surface.has_neighbours(passed)) continue;
     if (beams_below_[passed] < UINT16_MAX) ++beams_below_[passed];
+  }
+}
+
+/// Whether a place belongs to lower ground: more of it is seen around, and none above. Reflections
+/// lie below seen ground, or alone.
+bool HoleEvidence::is_on_floor(const Eigen::Vector3f& place, const GroundSurface& surface) {
+  constexpr float kNear = 0.4F, kLevel = 0.15F;  // metres
+  constexpr int kFewest = 12;                    // cells
+  const float step = surface.cell_size();
+  int level = 0;
+  for (float dy = -kNear; dy <= kNear; dy += step) {
+    for (float dx = -kNear; dx <= kNear; dx += step) {
+      const auto cell = surface.inner_cell_at(place.x() + dx, place.y() + dy);
+      if (!cell || surface.points_in(*cell) == 0) continue;
+      const float above = surface.seen(*cell) - place.z();
+      if (above > kLevel && surface.is_ground(*cell)) return false;
+      if (std::abs(above) < kLevel) ++level;
+    }
+  }
+  return level >= kFewest;
+}
+
+/// Marks the way of a beam over cells in which nothing is seen, just before where it ended: there
+/// the ground lies lower. A beam that comes from below seen ground is a reflection.
+void HoleEvidence::follow_over_gap(const Eigen::Vector3f& origin, const Eigen::Vector3f& end,
+                                   const GroundSurface& surface) {
+  constexpr float kLeastGap = 0.8F;  // metres: between the lidar's rings there are shorter ones
+  constexpr float kDense = 9;  // metres: farther off the lidar's rings leave gaps of their own
+  constexpr int kMostRim = 4;  // cells of the gap's near side that need not be ground
+  const Eigen::Vector3f back = origin - end;
+  const float way = back.head<2>().norm();
+  if (back.z() <= 0 || way < kLeastGap) return;
+  if ((end.head<2>() - robot_).squaredNorm() > kDense * kDense) return;
+  const Eigen::Vector3f stride = back * (surface.cell_size() / way);
+  const auto most = static_cast<int>(way / surface.cell_size());
+  const auto cell_after = [&](int steps) {
+    const Eigen::Vector3f at = end + static_cast<float>(steps) * stride;
+    return surface.inner_cell_at(at.x(), at.y());
+  };
+  const auto is_unseen = [&](int steps) {
+    const auto cell = cell_after(steps);
+    return cell && surface.points_in(*cell) == 0;
+  };
+  int gap = 0;
+  while (gap < most && is_unseen(gap + 1)) ++gap;
+  if (static_cast<float>(gap) * surface.cell_size() < kLeastGap) return;
+  int rim = gap + 1;
+  const auto is_ground = [&](int steps) {
+    const auto cell = cell_after(steps);
+    return cell && surface.is_ground(*cell);
+  };
+  while (rim < std::min(gap + kMostRim, most) && !is_ground(rim)) ++rim;
+  if (!is_ground(rim)) return;
+  const float level = surface.seen(*cell_after(rim));
+  if (end.z() + static_cast<float>(rim) * stride.z() < level - kBelow) return;
+  if (!is_on_floor(end, surface)) return;
+  for (int i = 1; i <= gap; ++i) {
+    const std::size_t passed = *cell_after(i);
+    if (lost_beams_[passed] < UINT16_MAX) ++lost_beams_[passed];
+    lowest_beam_[passed] =
+        std::min(lowest_beam_[passed], end.z() + static_cast<float>(i) * stride.z());
   }
 }
 

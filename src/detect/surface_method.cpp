@@ -14,6 +14,27 @@ namespace {
 
 constexpr float kMostly = 0.7F;  // share of a cluster's points
 
+/// The bounds of the points, and beyond them places where the ground may end, as far as a cloud
+/// would tell of it.
+PlaneBounds bounds_with_voids(const PointCloud& points, const SeenCloud& cloud) {
+  PlaneBounds bounds = bounds_of(points);
+  if (!cloud.robot || points.size() == 0) return bounds;
+  constexpr float kDense = 8;  // metres: farther off the lidar's rings leave gaps of their own
+  const float reach = std::min(cloud.reach, kDense);
+  const Eigen::Vector2f low = cloud.robot->array() - reach, high = cloud.robot->array() + reach;
+  const auto lower = [](float seen, float least) {
+    return std::min(seen, std::max(seen - GroundEdges::kFarthest, least));
+  };
+  const auto higher = [](float seen, float most) {
+    return std::max(seen, std::min(seen + GroundEdges::kFarthest, most));
+  };
+  bounds.low_x = lower(bounds.low_x, low.x());
+  bounds.low_y = lower(bounds.low_y, low.y());
+  bounds.high_x = higher(bounds.high_x, high.x());
+  bounds.high_y = higher(bounds.high_y, high.y());
+  return bounds;
+}
+
 }  // namespace
 
 GroundSurfaceSettings ground_surface_of(const SurfaceSettings& settings) {
@@ -84,7 +105,7 @@ void SurfaceMethod::build_ground(const PointCloud& points, const SeenCloud& clou
     surface_.build(points);
   } else {
     // What is loose, a rough surface tells.
-    surface_.build_roughly(points);
+    surface_.build_roughly(points, bounds_with_voids(points, cloud));
     beam_grid_.find_loose(cloud.points, cloud.beams, surface_, lowest, highest_);
     surface_.build_below(beam_grid_.loose());
   }

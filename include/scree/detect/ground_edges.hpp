@@ -27,6 +27,8 @@ struct GroundEdge {
 /// next lies far below or above this, or where beams passed below it.
 class GroundEdges {
 public:
+  static constexpr float kFarthest = 3;  ///< metres beyond the ground that are looked at
+
   explicit GroundEdges(std::size_t max_cells);
 
   void find(const GroundSurface& surface, const HoleEvidence& beams);

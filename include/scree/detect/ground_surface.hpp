@@ -40,7 +40,8 @@ public:
   void build(PointView points);
   /// Builds a surface that is right to some centimetres, from cells twice as wide: a quarter as
   /// many. Of it only heights are known; the raster is that of build_below(). @pre as build()
-  void build_roughly(PointView points);
+  /// @param bounds that the raster has to hold: those of the points, or wider
+  void build_roughly(PointView points, const PlaneBounds& bounds);
   /// Builds the surface of the same points. In loose cells the height is what was seen lowest
   /// instead of the median: below grass the ground goes on.
   /// @param loose for each cell of the raster whether it is loose; 0: it is not
@@ -112,7 +113,7 @@ private:
   /// Sorts the points by cells and sets the heights of these.
   /// @return the mean number of points in the cells that have any
   float gather(PointView points);
-  void fill_raster(PointView points);
+  void fill_raster(PointView points, const PlaneBounds& bounds);
   void find_ground();
   void halve();
   GroundRaster rough_raster() const { return {(columns_ + 1) / 2, (rows_ + 1) / 2, 2 * cell_}; }

@@ -24,7 +24,8 @@ public:
 
   /// Whether beams went below the level of the ground in a cell, and no ground was seen there.
   bool is_void(std::size_t cell) const { return beams_below_[cell] > 0; }
-  /// Beams that passed below that level and did not come back, and z of the lowest of them, metres.
+  /// Beams that passed over a cell in which nothing is seen, and ended farther on or did not come
+  /// back; and z of the lowest of them, metres.
   std::uint16_t lost_beams(std::size_t cell) const { return lost_beams_[cell]; }
   float lowest_beam(std::size_t cell) const { return lowest_beam_[cell]; }
 
@@ -40,6 +41,9 @@ private:
 
   void follow(const Eigen::Vector3f& origin, const Eigen::Vector3f& end,
               const GroundSurface& surface);
+  void follow_over_gap(const Eigen::Vector3f& origin, const Eigen::Vector3f& end,
+                       const GroundSurface& surface);
+  static bool is_on_floor(const Eigen::Vector3f& place, const GroundSurface& surface);
   void find_tops(const GroundSurface& surface);
   int steps_above(const Eigen::Vector3f& place, const Eigen::Vector3f& direction,
                   const GroundSurface& surface) const;

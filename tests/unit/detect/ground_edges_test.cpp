@@ -30,13 +30,19 @@ PointCloud shaped(const std::function<float(float, float)>& height) {
 class GroundEdgesTest : public testing::Test {
 protected:
   std::span<const GroundEdge> edges_of(PointView cloud, std::span<const PassingBeam> lost = {}) {
-    surface_.build(cloud);
     const Eigen::Vector3f sensor(-6, 0, 1);
     SeenCloud with_beams{.points = cloud};
     if (!lost.empty()) {
       with_beams.origins = {&sensor, 1};
       with_beams.passing = lost;
     }
+    return edges_of(with_beams);
+  }
+  std::span<const GroundEdge> seen_from(const Eigen::Vector3f& sensor, PointView cloud) {
+    return edges_of({.points = cloud, .origins = {&sensor, 1}});
+  }
+  std::span<const GroundEdge> edges_of(const SeenCloud& with_beams) {
+    surface_.build(with_beams.points);
     evidence_.build(with_beams, surface_);
     edges_.find(surface_, evidence_);
     return edges_.all();
@@ -58,6 +64,40 @@ TEST_F(GroundEdgesTest, AStepDownIsOneEdgeBeyondTheGround) {
     EXPECT_NEAR(edges[0].box.center_x, 2.15, 0.15) << step;
     EXPECT_EQ(edges[0].evidence, Evidence::edge) << step;
   }
+}
+
+TEST_F(GroundEdgesTest, ADropWhoseFootIsHiddenIsToldByTheBeamsThatPassedOverIt) {
+  const Eigen::Vector3f sensor(-2, 0, 1);
+  const auto drop = [](float x, float) {
+    if (x < 0) return 0.0F;
+    return x < 1.6F ? NAN : -0.8F;  // as far as the edge hides it
+  };
+  const auto edges = seen_from(sensor, shaped(drop));
+  ASSERT_EQ(edges.size(), 1U);
+  EXPECT_NEAR(edges[0].step, -0.8, 0.1);
+  EXPECT_NEAR(edges[0].ground, 0, 0.02);
+  EXPECT_GT(edges[0].box.length, 5);
+  EXPECT_LT(edges[0].box.center_x - edges[0].box.width / 2, 0.4);
+  EXPECT_TRUE(edges_of(shaped(drop)).empty()) << "without beams it may be a slope";
+}
+
+TEST_F(GroundEdgesTest, ACrestThatHidesTheSlopeBehindItIsNone) {
+  const auto crest = [](float x, float) {
+    const float z = std::max(-0.1F * x * x, -0.8F);
+    if (x < 1.74F) return x < 0 ? 0.0F : z;
+    return x < 3.17F ? NAN : -0.8F;
+  };
+  EXPECT_TRUE(seen_from({-2, 0, 1}, shaped(crest)).empty());
+}
+
+TEST_F(GroundEdgesTest, ReflectionsBelowAGapBetweenTheRingsAreNoDrop) {
+  PointCloud cloud = shaped([](float x, float) { return x > 0 && x < 1 ? NAN : 0.0F; });
+  PointCloud with_reflections(cloud.size() + 20);
+  with_reflections.copy_from(cloud);
+  for (int i = 0; i < 20; ++i) {
+    with_reflections.push_back(1.3F, -1 + 0.1F * static_cast<float>(i), -0.8F, 0);
+  }
+  EXPECT_TRUE(seen_from({-2, 0, 1}, with_reflections).empty());
 }
 
 TEST_F(GroundEdgesTest, AStepUpToLevelGroundIsOneEdge) {

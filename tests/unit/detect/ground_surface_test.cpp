@@ -124,7 +124,7 @@ TEST_P(GroundSurfaceTest, IsAsGoodAsWantedWhereItIsRough) {
            (test::in_square(x - 2, y, 0.4F) ? 0.4F : 0.0F);
   });
   GroundSurface surface(settings_for_test(), kMaxPoints, kMaxCells);
-  surface.build_roughly(cloud);
+  surface.build_roughly(cloud, bounds_of(cloud));
   std::vector<float> heights(cloud.size());
   surface.heights_above(cloud, heights);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
