@@ -138,13 +138,16 @@ bool OwnReturns::look_for_boxes() {
   return has_found;
 }
 
-/// Puts a box around what hangs together with a bin, unless it goes on beyond the reach.
+/// Puts a box around what hangs together with a bin, unless it goes on: beyond the reach, or in
+/// directions that do not keep their range, as a wall beside the way does.
 bool OwnReturns::find_around(std::size_t start) {
   constexpr std::size_t kFewest = 3;  // bins
   constexpr float kStep = 0.3F;       // metres from one bin to the next
+  constexpr std::size_t kMostOn = 4;  // one of so many may go on: a body's border wavers
   const Eigen::Vector3d first = (to_base_ * bins_[start].nearest).cast<double>();
   BodyBox box{first, first};
   bool is_bounded = true;
+  std::size_t going_on = 0;  // members
   members_.clear();
   visited_[start] = 1;
   members_.push_back(static_cast<std::uint32_t>(start));
@@ -153,15 +156,19 @@ bool OwnReturns::find_around(std::size_t start) {
     const Eigen::Vector3d place = (to_base_ * bin.nearest).cast<double>();
     box = {box.low.cwiseMin(place), box.high.cwiseMax(place)};
     is_bounded &= bin.range < kBorder;
+    bool goes_on = false;
     for_each_beside(members_[i], [&](std::size_t beside) {
       const Bin& other = bins_[beside];
+      if (other.range == 0 || std::abs(other.range - bin.range) > kStep) return;
+      goes_on |= !persists(other);
       if (visited_[beside] != 0 || !persists(other)) return;
-      if (std::abs(other.range - bin.range) > kStep) return;
       visited_[beside] = 1;
       members_.push_back(static_cast<std::uint32_t>(beside));
     });
+    going_on += goes_on ? 1 : 0;
   }
-  if (!is_bounded || members_.size() < kFewest) return false;
+  if (!is_bounded || members_.size() < kFewest || kMostOn * going_on > members_.size())
+    return false;
   box.low.array() -= kRoom;
   box.high.array() += kRoom;
   for (BodyBox& other : found_) {

@@ -13,7 +13,7 @@ namespace scree {
 
 /// Returns from the robot itself. Those in the boxes of its body are used for nothing. A watch
 /// notices others: seen from the lidar they keep their distance while all farther off changes, and
-/// they are bounded. It puts boxes around them.
+/// they are bounded: they do not go on into what is seen beside them. It puts boxes around them.
 ///
 /// Not noticed is what lies lower than 0.15 m above the origin of `base`, where level ground keeps
 /// its distance too, and what lies farther than 2.35 m from the lidar, where a wall beside the way
