@@ -183,20 +183,21 @@ void HoleEvidence::follow_over_gap(const Eigen::Vector3f& origin, const Eigen::V
   while (gap < most && is_unseen(gap + 1)) ++gap;
   if (static_cast<float>(gap) * surface.cell_size() < kLeastGap) return;
   int rim = gap + 1;
-  const auto is_ground = [&](int steps) {
-    const auto cell = cell_after(steps);
-    return cell && surface.is_ground(*cell);
-  };
-  while (rim < std::min(gap + kMostRim, most) && !is_ground(rim)) ++rim;
-  if (!is_ground(rim)) return;
-  const float level = surface.seen(*cell_after(rim));
-  if (end.z() + static_cast<float>(rim) * stride.z() < level - kBelow) return;
-  if (!is_on_floor(end, surface)) return;
+  std::optional<std::size_t> ground;
+  for (; rim < std::min(gap + 1 + kMostRim, most); ++rim) {
+    ground = cell_after(rim);
+    if (ground && surface.is_ground(*ground)) break;
+    ground.reset();
+  }
+  if (!ground) return;
+  const float height = end.z() + static_cast<float>(rim) * stride.z();
+  if (height < surface.seen(*ground) - kBelow || !is_on_floor(end, surface)) return;
   for (int i = 1; i <= gap; ++i) {
-    const std::size_t passed = *cell_after(i);
-    if (lost_beams_[passed] < UINT16_MAX) ++lost_beams_[passed];
-    lowest_beam_[passed] =
-        std::min(lowest_beam_[passed], end.z() + static_cast<float>(i) * stride.z());
+    const auto passed = cell_after(i);
+    if (!passed) return;
+    if (lost_beams_[*passed] < UINT16_MAX) ++lost_beams_[*passed];
+    lowest_beam_[*passed] =
+        std::min(lowest_beam_[*passed], end.z() + static_cast<float>(i) * stride.z());
   }
 }
 

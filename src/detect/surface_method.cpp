@@ -18,7 +18,7 @@ constexpr float kMostly = 0.7F;  // share of a cluster's points
 /// would tell of it.
 PlaneBounds bounds_with_voids(const PointCloud& points, const SeenCloud& cloud) {
   PlaneBounds bounds = bounds_of(points);
-  if (!cloud.robot || points.size() == 0) return bounds;
+  if (!cloud.robot || points.empty()) return bounds;
   constexpr float kDense = 8;  // metres: farther off the lidar's rings leave gaps of their own
   const float reach = std::min(cloud.reach, kDense);
   const Eigen::Vector2f low = cloud.robot->array() - reach, high = cloud.robot->array() + reach;
