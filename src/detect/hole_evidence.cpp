@@ -163,12 +163,12 @@ bool HoleEvidence::is_on_floor(const Eigen::Vector3f& place, const GroundSurface
 void HoleEvidence::follow_over_gap(const Eigen::Vector3f& origin, const Eigen::Vector3f& end,
                                    const GroundSurface& surface) {
   constexpr float kLeastGap = 0.8F;  // metres: between the lidar's rings there are shorter ones
-  constexpr float kDense = 9;  // metres: farther off the lidar's rings leave gaps of their own
-  constexpr int kMostRim = 4;  // cells of the gap's near side that need not be ground
+  constexpr float kDenseReach = 9;  // metres: farther off the lidar's rings leave gaps of their own
+  constexpr int kMostRim = 4;       // cells of the gap's near side that need not be ground
   const Eigen::Vector3f back = origin - end;
   const float way = back.head<2>().norm();
   if (back.z() <= 0 || way < kLeastGap) return;
-  if ((end.head<2>() - robot_).squaredNorm() > kDense * kDense) return;
+  if ((end.head<2>() - robot_).squaredNorm() > kDenseReach * kDenseReach) return;
   const Eigen::Vector3f stride = back * (surface.cell_size() / way);
   const auto most = static_cast<int>(way / surface.cell_size());
   const auto cell_after = [&](int steps) {

@@ -19,8 +19,8 @@ constexpr float kMostly = 0.7F;  // share of a cluster's points
 PlaneBounds bounds_with_voids(const PointCloud& points, const SeenCloud& cloud) {
   PlaneBounds bounds = bounds_of(points);
   if (!cloud.robot || points.empty()) return bounds;
-  constexpr float kDense = 8;  // metres: farther off the lidar's rings leave gaps of their own
-  const float reach = std::min(cloud.reach, kDense);
+  constexpr float kDenseReach = 8;  // metres: farther off the lidar's rings leave gaps of their own
+  const float reach = std::min(cloud.reach, kDenseReach);
   const Eigen::Vector2f low = cloud.robot->array() - reach, high = cloud.robot->array() + reach;
   const auto lower = [](float seen, float least) {
     return std::min(seen, std::max(seen - GroundEdges::kFarthest, least));
