@@ -94,8 +94,8 @@ Result<void> check_lines(const GpioSettings& settings) {
   const std::array named{std::pair("pps", &settings.pps), std::pair("stop", &settings.stop),
                          std::pair("heartbeat", &settings.heartbeat)};
   for (const auto& [key, name] : named) {
-    const auto parts = name->empty() ? fail("") : parts_of(*name);
-    if (!parts) continue;
+    const auto parts = parts_of(*name);
+    if (!parts) continue;  // none, or what check_name() refuses
     const auto there = check_line(parts->chip, parts->line);
     if (!there) return of_key(key, *name, there.error());
   }

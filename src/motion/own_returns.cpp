@@ -160,8 +160,9 @@ bool OwnReturns::find_around(std::size_t start) {
     for_each_beside(members_[i], [&](std::size_t beside) {
       const Bin& other = bins_[beside];
       if (other.range == 0 || std::abs(other.range - bin.range) > kStep) return;
-      goes_on |= !persists(other);
-      if (visited_[beside] != 0 || !persists(other)) return;
+      const bool keeps_on = persists(other);
+      goes_on |= !keeps_on;
+      if (!keeps_on || visited_[beside] != 0) return;
       visited_[beside] = 1;
       members_.push_back(static_cast<std::uint32_t>(beside));
     });
