@@ -182,14 +182,15 @@ void HoleEvidence::follow_over_gap(const Eigen::Vector3f& origin, const Eigen::V
   int gap = 0;
   while (gap < most && is_unseen(gap + 1)) ++gap;
   if (static_cast<float>(gap) * surface.cell_size() < kLeastGap) return;
+  const auto is_ground = [&](int steps) {
+    const auto cell = cell_after(steps);
+    return cell && surface.is_ground(*cell);
+  };
+  const int last = std::min(gap + 1 + kMostRim, most);
   int rim = gap + 1;
-  std::optional<std::size_t> ground;
-  for (; rim < std::min(gap + 1 + kMostRim, most); ++rim) {
-    ground = cell_after(rim);
-    if (ground && surface.is_ground(*ground)) break;
-    ground.reset();
-  }
-  if (!ground) return;
+  while (rim < last && !is_ground(rim)) ++rim;
+  const auto ground = cell_after(rim);
+  if (rim >= last || !ground) return;
   const float height = end.z() + static_cast<float>(rim) * stride.z();
   if (height < surface.seen(*ground) - kBelow || !is_on_floor(end, surface)) return;
   for (int i = 1; i <= gap; ++i) {
