@@ -88,7 +88,7 @@ SetupWatch::Verdict SetupWatch::judge_encoder_delay(const WheelFit& wheel) const
   if (wheel.windows < kFewestWindows || std::abs(wheel.by_way - 1) > kScaleOff) return {};
   Lags lags;
   for (const Seen& seen : windows()) {
-    if (!seen.binds || !seen.has_wheel) continue;
+    if (!seen.binds || !seen.has_wheel || goes_aside(seen)) continue;
     const double way = std::copysign(seen.way.norm(), seen.way.x());
     lags.add(wheel.by_way * way + wheel.by_turn * seen.turn.z() - seen.wheel,
              seen.wheel_gain / SetupWindow::kBefore);

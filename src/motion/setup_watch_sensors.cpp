@@ -86,6 +86,14 @@ SetupWatch::Verdict SetupWatch::judge_imu_rotation() const {
            .set = roll_pitch_yaw_deg(turn * imu_)}};
 }
 
+/// A wheeled robot does not go sideways. Where the lidar says so it has lost its way, as among
+/// people, or it is mounted askew.
+bool SetupWatch::goes_aside(const Seen& seen) const {
+  constexpr double kMostAside = 0.3, kNoise = 0.1;  // of the way ahead; m/s
+  return !belief(SetupFault::lidar_rotation).is_named &&
+         std::abs(seen.way.y()) > kMostAside * std::abs(seen.way.x()) + kNoise * seen.seconds;
+}
+
 /// A wheel rolls as far as its place moves: by the way of `base`, and in turns by its distance from
 /// the middle. A least-squares fit in which windows that fit badly count less.
 SetupWatch::WheelFit SetupWatch::fit_wheel() const {
@@ -102,11 +110,15 @@ SetupWatch::WheelFit SetupWatch::fit_wheel() const {
     Eigen::Vector2d gradient = Eigen::Vector2d::Zero();
     double squares = 0, error_squares = 0;
     fit.way = fit.turns = 0;
-    fit.windows = 0;
+    fit.windows = fit.aside = 0;
     for (const Seen& seen : windows()) {
       const double way = std::copysign(seen.way.norm(), seen.way.x());
       const Eigen::Vector2d moved(way, seen.turn.z());
       if (!seen.is_bound || !seen.has_wheel) continue;
+      if (goes_aside(seen)) {
+        ++fit.aside;
+        continue;
+      }
       if (std::abs(way) < kLeastSpeed * seen.seconds &&
           std::abs(moved.y()) < kLeastRate * seen.seconds) {
         continue;
@@ -129,6 +141,7 @@ SetupWatch::WheelFit SetupWatch::fit_wheel() const {
     factors = information.ldlt().solve(gradient);
     fit.turn_deviation = scale * std::sqrt(information.inverse()(1, 1));
   }
+  if (2 * fit.aside > fit.windows) return {};
   fit.by_way = factors.x();
   fit.by_turn = factors.y();
   return fit;

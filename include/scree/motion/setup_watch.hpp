@@ -89,10 +89,10 @@ private:
   /// The wheel's way for each metre of the robot's, and for each radian that it turns to the left.
   struct WheelFit {
     double by_way = 0, by_turn = 0;
-    double turn_deviation = 0;  ///< standard deviation of by_turn, metres
-    double residual = 0;        ///< share of the wheel's way
-    double way = 0, turns = 0;  ///< metres; rad^2
-    int windows = 0;
+    double turn_deviation = 0;   ///< standard deviation of by_turn, metres
+    double residual = 0;         ///< share of the wheel's way
+    double way = 0, turns = 0;   ///< metres; rad^2
+    int windows = 0, aside = 0;  ///< that tell, and that do not for the lidar went aside
   };
 
   /// How much later a sensor is than the lidar, seconds.
@@ -118,6 +118,7 @@ private:
   std::span<const Seen> windows() const { return {ring_.data(), std::min(count_, kWindows)}; }
   Seen seen_in_base(const SetupWindow& window) const;
   Belief& belief(SetupFault fault) { return beliefs_[static_cast<std::size_t>(fault)]; }
+  const Belief& belief(SetupFault fault) const { return beliefs_[static_cast<std::size_t>(fault)]; }
   void judge();
   void update_report();
   Travel travel() const;
@@ -126,6 +127,7 @@ private:
   Verdict judge_lidar_rotation() const;
   Fit fit_imu(const Eigen::Matrix3d& hypothesis) const;
   Verdict judge_imu_rotation() const;
+  bool goes_aside(const Seen& seen) const;
   WheelFit fit_wheel() const;
   Verdict judge_encoder_scale(const WheelFit& fit) const;
   Verdict judge_encoder_place(const WheelFit& fit) const;

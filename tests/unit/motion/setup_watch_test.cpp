@@ -204,6 +204,19 @@ TEST(SetupWatchTest, DoesNotTakeSlipForAScale) {
   EXPECT_EQ(watch.report().count, 0U);
 }
 
+/// Among people who walk past, the lidar may drift off: aside and too far.
+TEST(SetupWatchTest, DoesNotJudgeTheScaleByALidarThatDriftsAside) {
+  SetupWatch watch(robot());
+  Robot driven(robot());
+  for (int i = 0; i < 24; ++i) {
+    SetupWindow window = driven.window(1, 0.1);
+    const double aside = radians(30 * (i % 3) - 25);
+    window.way = 1.5 * (Eigen::AngleAxisd(aside, Eigen::Vector3d::UnitZ()) * window.way);
+    watch.add(window);
+  }
+  EXPECT_EQ(watch.report().count, 0U);
+}
+
 TEST(SetupWatchTest, DoesNotJudgeByWhatIsNotBound) {
   Settings settings = robot();
   settings.lidar.rpy_deg.z() += 10;
