@@ -15,11 +15,6 @@ constexpr std::size_t kPassingBeams = 16384;
 /// Voxels that are noted for having moved away in a sweep; others wait for prune().
 constexpr std::size_t kMostMoved = 65536;
 
-/// Wraps around in 13 years.
-std::uint32_t tenths(std::int64_t time_ns) {
-  return static_cast<std::uint32_t>(time_ns / 100'000'000);
-}
-
 }  // namespace
 
 RollingMap::RollingMap(const MapSettings& settings, std::size_t max_voxels)
@@ -169,75 +164,6 @@ Occupancy RollingMap::occupancy_at(const Eigen::Vector3d& point) const {
 
 bool RollingMap::is_seen_through(const Eigen::Vector3d& point) const {
   return free_space_.is_seen_through(point.cast<float>(), sweep_);
-}
-
-namespace {
-
-/// A box in the frame of the map's floats.
-struct UprightBox {
-  Eigen::Vector2f middle, half;
-  Eigen::Matrix2f turn;  // into the box
-  float floor;
-
-  UprightBox(const Obstacle& obstacle, const Eigen::Vector3d& origin)
-      : middle((obstacle.center - origin).head<2>().cast<float>()),
-        half(obstacle.extent.head<2>().cast<float>() / 2),
-        turn(Eigen::Rotation2Df(static_cast<float>(-obstacle.yaw)).toRotationMatrix()),
-        floor(static_cast<float>(obstacle.center.z() - obstacle.extent.z() / 2 - origin.z())) {}
-
-  /// Whether a point higher than `least` above its floor lies in it, or beside it within reach.
-  bool holds(const Eigen::Vector3f& point, float least) const {
-    constexpr float kMargin = 0.2F;  // metres
-    if (point.z() <= floor + least) return false;
-    const Eigen::Vector2f at = turn * (point.head<2>() - middle);
-    return std::abs(at.x()) < half.x() + kMargin && std::abs(at.y()) < half.y() + kMargin;
-  }
-};
-
-}  // namespace
-
-/// Counts the places of a box, from knee height up to shortly below its top, by what beams tell.
-RollingMap::Places RollingMap::places_in(const Obstacle& obstacle) const {
-  constexpr double kStep = FreeSpace::kCell, kKnee = 0.25, kTop = 0.15;  // metres
-  const Eigen::Rotation2Dd turn(obstacle.yaw);
-  const Eigen::Vector3d half = obstacle.extent / 2;
-  Places places;
-  for (double z = kKnee - half.z(); z <= half.z() - kTop; z += kStep) {
-    for (double along = -half.x(); along <= half.x(); along += kStep) {
-      for (double across = -half.y(); across <= half.y(); across += kStep) {
-        const Eigen::Vector2d at = turn * Eigen::Vector2d(along, across);
-        const Eigen::Vector3d place = obstacle.center + Eigen::Vector3d(at.x(), at.y(), z);
-        places.add(free_space_.presence(place.cast<float>(), sweep_));
-      }
-    }
-  }
-  return places;
-}
-
-/// The same for the voxels in a box: what is left of someone is narrow.
-RollingMap::Places RollingMap::voxels_in(const Obstacle& obstacle) const {
-  constexpr float kKnee = 0.25F;  // metres
-  const UprightBox box(obstacle, origin_);
-  const Eigen::Vector3f origin = origin_.cast<float>();
-  Places places;
-  for (const MapVoxel& voxel : voxels_) {
-    if (!box.holds(voxel.mean, kKnee)) continue;
-    places.add(free_space_.presence(voxel.mean + origin, sweep_));
-  }
-  return places;
-}
-
-bool RollingMap::remove_left(const Obstacle& obstacle, bool was_left) {
-  constexpr float kFloor = 0.05F;   // metres
-  constexpr double kUpright = 0.8;  // metres: beams pass above what is lower
-  if (obstacle.height < kUpright) return false;
-  const Places places = was_left ? voxels_in(obstacle) : places_in(obstacle);
-  if (!places.are_empty()) return false;
-  const UprightBox box(obstacle, origin_);
-  for (std::size_t i = voxels_.size(); i-- > 0;) {
-    if (box.holds(voxels_[i].mean, kFloor)) voxels_.erase(i, sweep_);
-  }
-  return true;
 }
 
 /// Among trees the map fills up: then what is farthest off makes room, as far as obstacles are not

@@ -57,9 +57,9 @@ public:
   const Pose& to_odom() const { return levelling_.to_odom(); }
   const PoseFilter& filter() const { return filter_; }
   const RollingMap& map() const { return map_; }
-  /// As RollingMap::remove_left().
+  /// As RollingMap::remove_left() and remove_trail().
   bool remove_left(const Obstacle& obstacle, bool was_left) {
-    return map_.remove_left(obstacle, was_left);
+    return map_.remove_left(obstacle, was_left) || map_.remove_trail(obstacle);
   }
   void update_cloud() { map_.update_cloud(); }
   const MotionStep& step() const { return step_; }

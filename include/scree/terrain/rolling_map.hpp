@@ -61,6 +61,11 @@ public:
   /// looked at voxel by voxel
   /// @return whether it has left
   bool remove_left(const Obstacle& obstacle, bool was_left = false);
+  /// Removes what someone who walks has left behind in an obstacle's box: voxels that few sweeps
+  /// hit, in an order that goes on over the ground. What was hit just now stays.
+  /// @param obstacle as in remove_left()
+  /// @return whether nothing of it stays
+  bool remove_trail(const Obstacle& obstacle);
   /// Takes the cloud out of the map anew, after something was removed.
   void update_cloud();
   /// In the map's frame.
@@ -88,6 +93,10 @@ private:
     }
   };
 
+  /// Wraps around in 13 years.
+  static std::uint32_t tenths(std::int64_t time_ns) {
+    return static_cast<std::uint32_t>(time_ns / 100'000'000);
+  }
   VoxelKey key_of(const Eigen::Vector3f& point) const;
   void recenter(const Pose& pose);
   void decay_beam_counts();
@@ -106,6 +115,8 @@ private:
   void prune();
   Places places_in(const Obstacle& obstacle) const;
   Places voxels_in(const Obstacle& obstacle) const;
+  template <class Visit>
+  void for_each_voxel_in(const Obstacle& obstacle, float least, const Visit& visit);
   bool confirm(MapVoxel& voxel) const;
   bool has_confirmation(const MapVoxel& voxel) const;
   bool is_dust(const MapVoxel& voxel);

@@ -241,39 +241,6 @@ TEST_F(RollingMapTest, FollowsTheRobotOverKilometres) {
   }
 }
 
-TEST_F(RollingMapTest, WhatIsLeftOfSomeoneWhoWentGoesVoxelByVoxel) {
-  const auto see_someone = [this] {
-    for (double z = 0.3; z < 1.5; z += 0.04) see({4.01, 0, z});
-  };
-  const auto see_wall = [this] {
-    for (int i = 0; i < 400; ++i) {
-      const double share = i / 400.0;    // the wall's height that a beam over the place meets
-      see({8, 0.2, 2.4 * share - 0.4});  // beams go past 0.1 m beside
-    }
-  };
-  // A corner of its box lies in cells where nothing was ever hit.
-  Obstacle standing;
-  standing.center = {3.99, 0, 0.8};
-  standing.extent = {0.12, 0.06, 1.4};
-  standing.height = 1.4;
-  for (int i = 0; i < 6; ++i) {
-    see_someone();
-    see_wall();
-    end_sweep();
-    EXPECT_FALSE(map_.remove_left(standing, true)) << "still there";
-  }
-  for (int i = 0; i < 4; ++i) {
-    see_wall();
-    end_sweep();
-  }
-  EXPECT_TRUE(has_near({4.01, 0, 0.9}, 0.1));
-  EXPECT_FALSE(map_.remove_left(standing));
-  EXPECT_TRUE(map_.remove_left(standing, true));
-  EXPECT_TRUE(has_near({4.01, 0, 0.9}, 0.1));
-  map_.update_cloud();
-  EXPECT_FALSE(has_near({4.01, 0, 0.9}, 0.5));
-}
-
 TEST_F(RollingMapTest, TakesEmptySweepsAndPointsAtTheLidarItself) {
   end_sweep();
   see({0, 0, 1});
