@@ -34,7 +34,8 @@ struct UprightBox {
 /// A fit of the times at which voxels were last hit, as a plane over the ground.
 class TimesOverGround {
 public:
-  /// @param at metres; @param seconds any time's
+  /// @param at metres
+  /// @param seconds from any instant, the same for all
   void add(const Eigen::Vector2f& at, float seconds) {
     const Eigen::Vector4d row(1, at.x(), at.y(), seconds);
     sums_ += row * row.transpose();
@@ -139,7 +140,8 @@ bool RollingMap::remove_trail(const Obstacle& obstacle) {
   constexpr int kSettled = 4, kShare = 20;  // voxels that more hit: so many, and one in so many
   constexpr std::uint32_t kFresh = 5;       // sweeps: he may be there still
   constexpr float kTenth = 0.1F;            // seconds
-  if (obstacle.height < kUpright) return false;
+  constexpr double kLongest = 6;            // metres: a trail of some seconds
+  if (obstacle.height < kUpright || obstacle.extent.head<2>().maxCoeff() > kLongest) return false;
   TimesOverGround times;
   int voxels = 0, settled = 0;
   const auto is_settled = [&] { return settled >= kSettled && kShare * settled > voxels; };
