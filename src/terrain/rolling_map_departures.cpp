@@ -9,6 +9,8 @@
 namespace scree {
 namespace {
 
+constexpr float kKnee = 0.25F, kFloor = 0.05F;  // metres above an obstacle's lowest point
+
 /// A box in the frame of the map's floats.
 struct UprightBox {
   static constexpr float kMargin = 0.2F;  ///< metres
@@ -70,7 +72,7 @@ private:
 
 /// Counts the places of a box, from knee height up to shortly below its top, by what beams tell.
 RollingMap::Places RollingMap::places_in(const Obstacle& obstacle) const {
-  constexpr double kStep = FreeSpace::kCell, kKnee = 0.25, kTop = 0.15;  // metres
+  constexpr double kStep = FreeSpace::kCell, kTop = 0.15;  // metres
   const Eigen::Rotation2Dd turn(obstacle.yaw);
   const Eigen::Vector3d half = obstacle.extent / 2;
   Places places;
@@ -88,7 +90,6 @@ RollingMap::Places RollingMap::places_in(const Obstacle& obstacle) const {
 
 /// The same for the voxels in a box: what is left of someone is narrow.
 RollingMap::Places RollingMap::voxels_in(const Obstacle& obstacle) const {
-  constexpr float kKnee = 0.25F;  // metres
   const UprightBox box(obstacle, origin_);
   const Eigen::Vector3f origin = origin_.cast<float>();
   Places places;
@@ -100,7 +101,6 @@ RollingMap::Places RollingMap::voxels_in(const Obstacle& obstacle) const {
 }
 
 bool RollingMap::remove_left(const Obstacle& obstacle, bool was_left) {
-  constexpr float kFloor = 0.05F;   // metres
   constexpr double kUpright = 0.8;  // metres: beams pass above what is lower
   if (obstacle.height < kUpright) return false;
   const Places places = was_left ? voxels_in(obstacle) : places_in(obstacle);
@@ -135,7 +135,7 @@ void RollingMap::for_each_voxel_in(const Obstacle& obstacle, float least, const 
 /// Who walks far off is in each voxel for a moment only, and the lidar's rings leave gaps there
 /// through which no beam tells that he has gone on.
 bool RollingMap::remove_trail(const Obstacle& obstacle) {
-  constexpr float kUpright = 0.4F, kKnee = 0.25F, kFloor = 0.05F;  // metres
+  constexpr float kUpright = 0.4F;          // metres
   constexpr std::uint8_t kMostSweeps = 2;   // that hit a voxel which someone walked through
   constexpr int kSettled = 4, kShare = 20;  // voxels that more hit: so many, and one in so many
   constexpr std::uint32_t kFresh = 5;       // sweeps: he may be there still
