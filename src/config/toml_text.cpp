@@ -97,7 +97,8 @@ std::string_view file_of(const Key& key) {
   if (key.table == "detect.cloud") return "cloud.toml";
   if (key.table == "detect.sweep") return "sweep.toml";
   const bool is_owners =
-      (key.table == "map" && key.name == "wait") || (key.table == "track" && key.name == "reach");
+      (key.table == "map" && key.name == "wait") ||
+      (key.table == "track" && (key.name == "reach" || key.name == "least_height"));
   const bool is_driving =
       key.table == "detect.map" || ((key.table == "map" || key.table == "track") && !is_owners);
   return is_driving ? "map.toml" : kOwnersFile;

@@ -18,6 +18,13 @@ bool may_be_same(const Obstacle& a, const Obstacle& b) {
   return std::min(distance_to_box(a, b.center), distance_to_box(b, a.center)) <= kNear;
 }
 
+/// Whether an obstacle may be higher, or a hole deeper, than it looks: of a kerb, as the surface
+/// runs from the ground before it to that behind it; of a hole whose floor is not seen.
+bool may_be_higher(const Obstacle& obstacle) {
+  constexpr double kKerb = 0.7;  // metres long
+  return obstacle.height > 0 ? obstacle.extent.x() >= kKerb : obstacle.evidence != Evidence::inside;
+}
+
 }  // namespace
 
 Tracker::Tracker(const TrackingSettings& settings, std::size_t max_tracks,
@@ -119,7 +126,8 @@ void Tracker::start_tracks(std::int64_t stamp_ns, const Eigen::Vector3d& robot,
 /// for the first time.
 void Tracker::choose_published() {
   for (Track& track : tracks_) {
-    const bool is_doubted = track.confidence < static_cast<float>(settings_.disappear);
+    const bool is_doubted =
+        track.confidence < static_cast<float>(settings_.disappear) || is_flat(track);
     track.doubted = is_doubted ? track.doubted + turns_ : 0;
     if (track.is_published) {
       // Longer than a turn, unless its place was seen empty: one list that doubts it would make it
@@ -128,10 +136,20 @@ void Tracker::choose_published() {
     } else {
       // The turn that found it first counts whole.
       track.is_published = track.confidence >= static_cast<float>(settings_.appear) &&
+                           !is_flat(track) &&
                            track.found + 1 - turns_ >= static_cast<float>(settings_.least_found);
       if (track.is_published && track.obstacle.id == 0) track.obstacle.id = next_id_++;
     }
   }
+}
+
+/// Whether the wheels pass a track's obstacle, with hysteresis.
+bool Tracker::is_flat(const Track& track) const {
+  constexpr double kStays = 0.75, kHidden = 0.5;  // share of the least height
+  double least = settings_.least_height;
+  if (track.is_published) least *= kStays;
+  if (may_be_higher(track.obstacle)) least *= kHidden;
+  return std::abs(track.obstacle.height) < least;
 }
 
 /// Lists the published obstacles within reach of the robot, fragments merged, none in another.

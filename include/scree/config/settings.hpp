@@ -201,6 +201,7 @@ struct TrackingSettings {
   double disappear = 0.26;
   double remember = 1.0;
   double reach = 10;
+  double least_height = 0.12;  ///< metres; also the least depth of a hole
 };
 
 /// Gaussian-kernel Sobel operator (paper eq. 1-4).
