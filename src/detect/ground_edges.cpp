@@ -13,10 +13,16 @@ constexpr float kLeastStep = 0.15F;    // metres
 constexpr float kLeastSlope = 0.5F;    // of the way to the other level: 27 degrees
 constexpr float kBend = 0.1F;          // metres a metre that ground which is not seen may bend down
 constexpr float kFarthestStep = 1.5F;  // metres to the other level of a steep step
+constexpr float kWidestWater = 8;      // metres
 constexpr float kClutter = 0.05F;      // metres: what is higher and no ground is an obstacle
 constexpr float kLeastTerrace = 1.5F;  // square metres of level ground above a step
 constexpr float kDense = 60;           // cells of ground up to 0.6 m around one
 constexpr std::uint16_t kFewestBeams = 4;
+
+/// Of a step, this far from the ground that is seen.
+float least_depth(float way) {
+  return kLeastStep + kBend * way;
+}
 
 /// The eight directions, and none in the middle.
 std::pair<int, int> direction(std::size_t i) {
@@ -68,7 +74,8 @@ void GroundEdges::find(const GroundSurface& surface, const HoleEvidence& beams) 
 void GroundEdges::look_around(std::size_t cell) {
   Plane plane;
   std::array<Beyond, 9> beyond{};
-  bool is_gentle = false;  // where it slopes down on one side, what is not seen does so, too
+  // Where it slopes down on one side, what is not seen does so, too; and so with water.
+  bool is_gentle = false, is_water = false;
   for (std::size_t i = 0; i < beyond.size(); ++i) {
     const auto [along_x, along_y] = direction(i);
     const std::size_t next = cell + static_cast<std::size_t>(along_x) +
@@ -77,9 +84,11 @@ void GroundEdges::look_around(std::size_t cell) {
     if (plane.cells == 0 && !fit(cell, plane)) return;
     beyond[i] = look(cell, along_x, along_y, plane);
     is_gentle |= beyond[i].is_gentle;
+    is_water |= beyond[i].is_water;
   }
   for (std::size_t i = 0; i < beyond.size(); ++i) {
-    if (beyond[i].step == 0 || (!beyond[i].is_seen && is_gentle)) continue;
+    const bool goes_on = is_gentle || (is_water && !beyond[i].has_return);
+    if (beyond[i].step == 0 || (!beyond[i].is_seen && goes_on)) continue;
     const auto [along_x, along_y] = direction(i);
     mark(cell, along_x, along_y, beyond[i], plane.height);
   }
@@ -167,8 +176,8 @@ int GroundEdges::steps_inside(std::size_t cell, int along_x, int along_y) const 
 GroundEdges::Beyond GroundEdges::look(std::size_t cell, int along_x, int along_y,
                                       const Plane& plane) const {
   const float stride = surface_->cell_size() * (along_x != 0 && along_y != 0 ? 1.4142F : 1.0F);
-  const int steps =
-      std::min(static_cast<int>(kFarthest / stride), steps_inside(cell, along_x, along_y));
+  const int inside = steps_inside(cell, along_x, along_y);
+  const int steps = std::min(static_cast<int>(kFarthest / stride), inside);
   const auto offset =
       static_cast<std::ptrdiff_t>(along_x) +
       static_cast<std::ptrdiff_t>(along_y) * static_cast<std::ptrdiff_t>(surface_->columns());
@@ -183,8 +192,10 @@ GroundEdges::Beyond GroundEdges::look(std::size_t cell, int along_x, int along_y
       if (beams_->lost_beams(at) < kFewestBeams) continue;
       if (unseen.cells == 0) unseen.cells = i;
       // Ground that rises levels off sooner or later.
-      const float depth = std::min(level, plane.height) - beams_->lowest_beam(at);
-      if (depth < kLeastStep + kBend * way || plane.cells < kDense) continue;
+      const float highest = std::min(level, plane.height);
+      const float depth = highest - beams_->lowest_beam(at);
+      unseen.has_return |= highest - beams_->lowest_return(at) >= least_depth(way);
+      if (depth < least_depth(way) || plane.cells < kDense) continue;
       unseen.step = std::min(unseen.step, -depth);
       continue;
     }
@@ -210,7 +221,28 @@ GroundEdges::Beyond GroundEdges::look(std::size_t cell, int along_x, int along_y
     }
     return {.is_gentle = true};
   }
+  if (unseen.step != 0 && !unseen.has_return) {
+    const int farthest = std::min(static_cast<int>(kWidestWater / stride), inside);
+    if (ends_water(cell, offset, plane.height, stride, steps + 1, farthest)) {
+      return {.is_water = true};
+    }
+  }
   return unseen;
+}
+
+/// Whether ground at the level of a cell is seen beyond a gap from which no beam came back: still
+/// water throws it away. In a pit, or below an edge, the beams end on something.
+bool GroundEdges::ends_water(std::size_t cell, std::ptrdiff_t offset, float level, float stride,
+                             int begin, int end) const {
+  for (int i = begin; i <= end; ++i) {
+    const std::size_t at = cell + static_cast<std::size_t>(offset * i);
+    const float least = least_depth(stride * static_cast<float>(i));
+    if (surface_->points_in(at) > 0) {
+      return surface_->is_ground(at) && std::abs(surface_->seen(at) - level) < least;
+    }
+    if (level - beams_->lowest_return(at) >= least) return false;
+  }
+  return false;
 }
 
 /// Whether something is seen at the ground's level shortly beyond a cell: then what lies below that

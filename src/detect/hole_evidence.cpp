@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "scree/core/sweep.hpp"
 #include "scree/detect/neighbours.hpp"
 
 namespace scree {
@@ -20,6 +21,7 @@ HoleEvidence::HoleEvidence(std::size_t max_cells)
       beams_below_(max_cells),
       lost_beams_(max_cells),
       lowest_beam_(max_cells),
+      lowest_return_(max_cells),
       // The tiles of any raster with at least five rows and columns, which the border gives it.
       tops_(max_cells / 64 + 64),
       cells_(max_cells),
@@ -33,6 +35,7 @@ void HoleEvidence::build(const SeenCloud& cloud, const GroundSurface& surface) {
   beams_below_.assign(cells, 0);
   lost_beams_.assign(cells, 0);
   lowest_beam_.assign(cells, std::numeric_limits<float>::infinity());
+  lowest_return_.assign(cells, std::numeric_limits<float>::infinity());
   taken_by_.assign(cells, 0);
   near_.assign(cells, Near::unknown);
   number_ = 0;
@@ -105,7 +108,8 @@ void HoleEvidence::follow_passing(const PassingBeam& beam, const GroundSurface& 
     }
     const float way = static_cast<float>(i) * surface.cell_size();
     const float below = std::min(beam.range - way, kBelowFor);
-    if (below > 0) mark_lost(at, at + below * beam.direction, surface);
+    const bool has_return = beam.range < kNoReturnRange / 2;  // it was turned, and rounded
+    if (below > 0) mark_lost(at, at + below * beam.direction, has_return, surface);
     return;
   }
 }
@@ -196,16 +200,21 @@ void HoleEvidence::follow_over_gap(const Eigen::Vector3f& origin, const Eigen::V
   for (int i = 1; i <= gap; ++i) {
     const auto passed = cell_after(i);
     if (!passed) return;
-    if (lost_beams_[*passed] < UINT16_MAX) ++lost_beams_[*passed];
-    lowest_beam_[*passed] =
-        std::min(lowest_beam_[*passed], end.z() + static_cast<float>(i) * stride.z());
+    add_lost(*passed, end.z() + static_cast<float>(i) * stride.z(), true);
   }
 }
 
-/// Marks the way of a beam that did not come back, from where ground was due, as far as the cloud
-/// would tell of ground.
+/// @param height of a beam over a cell, z in metres
+void HoleEvidence::add_lost(std::size_t cell, float height, bool has_return) {
+  if (lost_beams_[cell] < UINT16_MAX) ++lost_beams_[cell];
+  lowest_beam_[cell] = std::min(lowest_beam_[cell], height);
+  if (has_return) lowest_return_[cell] = std::min(lowest_return_[cell], height);
+}
+
+/// Marks the way of a beam that did not end where ground was due, from there on, as far as the
+/// cloud would tell of ground.
 void HoleEvidence::mark_lost(const Eigen::Vector3f& from, const Eigen::Vector3f& end,
-                             const GroundSurface& surface) {
+                             bool has_return, const GroundSurface& surface) {
   const Eigen::Vector3f way = end - from;
   const auto steps = static_cast<int>(way.head<2>().norm() / surface.cell_size());
   const Eigen::Vector3f stride = way / static_cast<float>(std::max(steps, 1));
@@ -218,8 +227,7 @@ void HoleEvidence::mark_lost(const Eigen::Vector3f& from, const Eigen::Vector3f&
       if (surface.height(at.x(), at.y()) - at.z() > kBelow) return;
       continue;
     }
-    if (lost_beams_[cell] < UINT16_MAX) ++lost_beams_[cell];
-    lowest_beam_[cell] = std::min(lowest_beam_[cell], at.z());
+    add_lost(cell, at.z(), has_return);
   }
 }
 

@@ -42,10 +42,12 @@ private:
 
   /// What lies beyond a cell of the ground in one direction.
   struct Beyond {
-    float step = 0;          ///< metres, 0: no edge
-    bool is_seen = false;    ///< what lies there
-    bool is_gentle = false;  ///< the ground goes on, lower and not steep
-    int cells = 0;           ///< to the first beam that passed below, where nothing is seen
+    float step = 0;           ///< metres, 0: no edge
+    bool is_seen = false;     ///< what lies there
+    bool is_gentle = false;   ///< the ground goes on, lower and not steep
+    bool is_water = false;    ///< the ground goes on where nothing came back before
+    bool has_return = false;  ///< a beam that passed where nothing is seen ended somewhere
+    int cells = 0;            ///< to the first beam that passed below, where nothing is seen
   };
   struct Plane {
     float height = 0, rise_x = 0, rise_y = 0;  ///< metres, metres a cell
@@ -66,6 +68,8 @@ private:
   bool fit(std::size_t cell, Plane& plane) const;
   int steps_inside(std::size_t cell, int along_x, int along_y) const;
   Beyond look(std::size_t cell, int along_x, int along_y, const Plane& plane) const;
+  bool ends_water(std::size_t cell, std::ptrdiff_t offset, float level, float stride, int begin,
+                  int end) const;
   bool is_level_next(std::size_t cell, std::ptrdiff_t offset, float level, float rise) const;
   bool goes_on_level(std::size_t cell, std::ptrdiff_t offset, float rise, int steps) const;
   void mark(std::size_t cell, int along_x, int along_y, const Beyond& beyond, float ground);

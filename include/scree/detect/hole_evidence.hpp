@@ -28,6 +28,8 @@ public:
   /// back; and z of the lowest of them, metres.
   std::uint16_t lost_beams(std::size_t cell) const { return lost_beams_[cell]; }
   float lowest_beam(std::size_t cell) const { return lowest_beam_[cell]; }
+  /// The same of those that ended somewhere. None does that went into still water.
+  float lowest_return(std::size_t cell) const { return lowest_return_[cell]; }
 
   /// What says that a cluster of points below the surface is a hole; none: nothing does.
   /// @param members of the cluster among the points
@@ -48,8 +50,9 @@ private:
   int steps_above(const Eigen::Vector3f& place, const Eigen::Vector3f& direction,
                   const GroundSurface& surface) const;
   void follow_passing(const PassingBeam& beam, const GroundSurface& surface);
-  void mark_lost(const Eigen::Vector3f& from, const Eigen::Vector3f& end,
+  void mark_lost(const Eigen::Vector3f& from, const Eigen::Vector3f& end, bool has_return,
                  const GroundSurface& surface);
+  void add_lost(std::size_t cell, float height, bool has_return);
   void collect_cells(std::span<const std::uint32_t> members, const CandidatePoints& points,
                      const GroundSurface& surface);
   void close_gaps(const GroundSurface& surface);
@@ -62,7 +65,7 @@ private:
   float reach_ = 0;                           // metres around the robot, see SeenCloud
   FixedVector<float> into_, through_ground_;  // beams that ended below the ground, by cell
   FixedVector<std::uint16_t> beams_below_, lost_beams_;
-  FixedVector<float> lowest_beam_;
+  FixedVector<float> lowest_beam_, lowest_return_;
   FixedVector<float> tops_;  // by tile, metres
   std::size_t tile_columns_ = 0;
   FixedVector<std::uint32_t> cells_, taken_by_;  // of the cluster, and the void beside it

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "detect/clouds.hpp"
+#include "scree/core/sweep.hpp"
 
 namespace scree {
 namespace {
@@ -184,7 +185,7 @@ TEST_F(GroundEdgesTest, WhereNothingIsSeenLostBeamsTellOfAShadow) {
     const Eigen::Vector3f sensor(sensor_x, 0, 1);
     for (float y = -4; y < 4; y += 0.02F) {
       for (float x = 2.1F; x < 3.5F; x += 0.2F) {
-        lost.push_back({sensor, (Eigen::Vector3f(x, y, 0) - sensor).normalized(), 1000});
+        lost.push_back({sensor, (Eigen::Vector3f(x, y, 0) - sensor).normalized(), kNoReturnRange});
       }
     }
     return lost;
@@ -200,6 +201,24 @@ TEST_F(GroundEdgesTest, WhereNothingIsSeenLostBeamsTellOfAShadow) {
   const OrientedBox& box = edges[0].box;
   EXPECT_NEAR(std::abs(box.yaw), 1.57, 0.05);
   EXPECT_NEAR(box.center_x - box.width / 2, 2, 0.2) << "it begins where the ground ends";
+}
+
+TEST_F(GroundEdgesTest, StillWaterFromWhichNothingComesBackIsNone) {
+  const PointCloud cloud = shaped([](float x, float) { return x > -2 && x < 2 ? NAN : 0.0F; });
+  const auto beams_of_range = [](float range) {
+    std::vector<PassingBeam> beams;
+    const Eigen::Vector3f sensor(-6, 0, 1);
+    for (float y = -4; y < 4; y += 0.02F) {
+      for (float x = -1.9F; x < 0; x += 0.2F) {
+        beams.push_back({sensor, (Eigen::Vector3f(x, y, 0) - sensor).normalized(), range});
+      }
+    }
+    return beams;
+  };
+  EXPECT_TRUE(edges_of(cloud, beams_of_range(kNoReturnRange)).empty());
+  const auto edges = edges_of(cloud, beams_of_range(12));
+  ASSERT_FALSE(edges.empty()) << "in a pit they end on its floor";
+  EXPECT_EQ(edges[0].evidence, Evidence::shadow);
 }
 
 }  // namespace
