@@ -50,13 +50,23 @@ void extend(Obstacle& whole, const Obstacle& fragment) {
 /// Whether the box of both holds little more than the two. A ditch and a pit beside its end do not
 /// fill one: it would hold the ground in the corner between them.
 bool fill_a_box(const Obstacle& a, const Obstacle& b) {
-  constexpr double kMargin = 0.2;  // metres around each in all
+  constexpr double kMargin = 0.3;  // metres around each in all
   const auto area = [](const Obstacle& box, double margin) {
     return (box.extent.x() + margin) * (box.extent.y() + margin);
   };
   Obstacle both = a;
   extend(both, b);
   return area(both, 0) <= area(a, kMargin) + area(b, kMargin);
+}
+
+/// Whether two obstacles may be parts of a bank, a log or a facade: one of them is long, and the
+/// smaller is no small thing at the foot of the other.
+bool may_be_parts(const Obstacle& whole, const Obstacle& part) {
+  constexpr double kLong = 1, kSlender = 3;  // metres; times as long as wide
+  constexpr double kShare = 0.5;             // of the width
+  const Obstacle& longer = whole.extent.x() >= part.extent.x() ? whole : part;
+  return longer.extent.x() >= std::max(kLong, kSlender * longer.extent.y()) &&
+         part.extent.x() >= kShare * whole.extent.y();
 }
 
 bool is_fragment(const Obstacle& whole, const Obstacle& fragment) {
@@ -71,7 +81,8 @@ bool is_fragment(const Obstacle& whole, const Obstacle& fragment) {
   constexpr double kNear = 0.5, kSliver = 0.15;  // metres
   const bool is_sliver = fragment.extent.y() <= kSliver;
   const bool is_hole = fragment.kind == ObstacleKind::negative;
-  if (distance <= kNear && (is_sliver || (is_hole && fill_a_box(whole, fragment)))) return true;
+  const bool is_part = (is_hole || may_be_parts(whole, fragment)) && fill_a_box(whole, fragment);
+  if (distance <= kNear && (is_sliver || is_part)) return true;
 
   // Parts of a wall lie on one line, and no further apart than what is known of it is long: a post
   // and a board are two.

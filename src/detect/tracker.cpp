@@ -18,11 +18,15 @@ bool may_be_same(const Obstacle& a, const Obstacle& b) {
   return std::min(distance_to_box(a, b.center), distance_to_box(b, a.center)) <= kNear;
 }
 
-/// Whether an obstacle may be higher, or a hole deeper, than it looks: of a kerb, as the surface
-/// runs from the ground before it to that behind it; of a hole whose floor is not seen.
-bool may_be_higher(const Obstacle& obstacle) {
+/// The height of an obstacle, or the depth of a hole, that may be there: twice what is seen of a
+/// kerb, as the surface runs from the ground before it to that behind it, and of a hole whose floor
+/// is not seen. Metres.
+double height_at_most(const Obstacle& obstacle) {
   constexpr double kKerb = 0.7;  // metres long
-  return obstacle.height > 0 ? obstacle.extent.x() >= kKerb : obstacle.evidence != Evidence::inside;
+  constexpr double kHidden = 2;
+  const bool is_part =
+      obstacle.height > 0 ? obstacle.extent.x() >= kKerb : obstacle.evidence != Evidence::inside;
+  return std::abs(obstacle.height) * (is_part ? kHidden : 1);
 }
 
 }  // namespace
@@ -126,8 +130,7 @@ void Tracker::start_tracks(std::int64_t stamp_ns, const Eigen::Vector3d& robot,
 /// for the first time.
 void Tracker::choose_published() {
   for (Track& track : tracks_) {
-    const bool is_doubted =
-        track.confidence < static_cast<float>(settings_.disappear) || is_flat(track);
+    const bool is_doubted = track.confidence < static_cast<float>(settings_.disappear);
     track.doubted = is_doubted ? track.doubted + turns_ : 0;
     if (track.is_published) {
       // Longer than a turn, unless its place was seen empty: one list that doubts it would make it
@@ -136,42 +139,41 @@ void Tracker::choose_published() {
     } else {
       // The turn that found it first counts whole.
       track.is_published = track.confidence >= static_cast<float>(settings_.appear) &&
-                           !is_flat(track) &&
                            track.found + 1 - turns_ >= static_cast<float>(settings_.least_found);
       if (track.is_published && track.obstacle.id == 0) track.obstacle.id = next_id_++;
     }
   }
 }
 
-/// Whether the wheels pass a track's obstacle, with hysteresis.
-bool Tracker::is_flat(const Track& track) const {
-  constexpr double kStays = 0.75, kHidden = 0.5;  // share of the least height
-  double least = settings_.least_height;
-  if (track.is_published) least *= kStays;
-  if (may_be_higher(track.obstacle)) least *= kHidden;
-  return std::abs(track.obstacle.height) < least;
-}
-
-/// Lists the published obstacles within reach of the robot, fragments merged, none in another.
+/// Lists the published obstacles within reach of the robot, fragments merged, none in another. What
+/// was in the list before stays in it a little longer.
 void Tracker::list_near(const Eigen::Vector3d& robot, FixedVector<Obstacle>& obstacles) {
+  constexpr double kStays = 0.3;       // metres beyond the reach
+  constexpr double kStaysFlat = 0.75;  // of the least height
   published_.clear();
   for (const Track& track : tracks_) {
     if (!track.is_published) continue;
     published_.push_back(track.obstacle);
     published_.back().confidence = track.confidence;
   }
-  fragment_merger_.merge(published_);
-  resolve_overlaps(published_);
-  constexpr double kStays = 0.3;  // metres beyond the reach, of what was in the list before
   std::swap(shown_, shown_before_);
+  const auto was_shown = [&](const Obstacle& obstacle) {
+    return std::ranges::find(shown_before_, obstacle.id) != shown_before_.end();
+  };
+  fragment_merger_.merge(published_);
+  const auto is_flat = [&](const Obstacle& obstacle) {
+    return height_at_most(obstacle) <
+           settings_.least_height * (was_shown(obstacle) ? kStaysFlat : 1);
+  };
+  const auto last = std::remove_if(published_.begin(), published_.end(), is_flat);
+  published_.resize(static_cast<std::size_t>(last - published_.begin()));
+  resolve_overlaps(published_);
   shown_.clear();
   obstacles.clear();
+  const auto distance = [&](const Obstacle& each) { return distance_to_box(each, robot); };
   for (const Obstacle& obstacle : published_) {
-    const bool was_shown = std::ranges::find(shown_before_, obstacle.id) != shown_before_.end();
-    const double reach = settings_.reach + (was_shown ? kStays : 0);
-    if (distance_to_box(obstacle, robot) > reach) continue;
+    if (distance(obstacle) > settings_.reach + (was_shown(obstacle) ? kStays : 0)) continue;
     shown_.push_back(obstacle.id);
-    const auto distance = [&](const Obstacle& each) { return distance_to_box(each, robot); };
     if (!push_nearest(obstacles, obstacle, distance)) ++dropped_;
   }
 }

@@ -9,9 +9,9 @@
 namespace scree {
 
 /// Merges obstacles of one kind that are fragments of one thing: shadows and the gaps between rings
-/// break slivers off a rock, and a ditch into parts along its edge. The fragment with the most
-/// points stays, with a box that holds the others and the lowest of their ids. What was one thing
-/// in most of the last lists, by its ids, stays one in a list where it looks apart.
+/// break slivers off a rock, and a ditch, a bank or a facade into parts along it. The fragment with
+/// the most points stays, with a box that holds the others and the lowest of their ids. What was
+/// one thing in most of the last lists, by its ids, stays one in a list where it looks apart.
 class FragmentMerger {
 public:
   explicit FragmentMerger(std::size_t max_obstacles);

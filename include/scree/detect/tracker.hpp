@@ -29,9 +29,8 @@ static_assert(std::size_t{kTrackFeatures} <= Features().size(),
               "they are the first inputs of a network");
 
 /// Follows obstacles from list to list, in a frame that stays. An obstacle keeps its id; it appears
-/// when its confidence has grown enough, it was found more than once and is no flatter than
-/// track.least_height, and goes when the confidence has fallen, soon where its place was seen
-/// empty.
+/// when its confidence has grown enough and it was found more than once, and goes when the
+/// confidence has fallen, soon where its place was seen empty. What wheels pass is followed only.
 class Tracker {
 public:
   struct Track {
@@ -96,7 +95,6 @@ private:
                     std::span<const Obstacle> found);
   void classify();
   void choose_published();
-  bool is_flat(const Track& track) const;
   void list_near(const Eigen::Vector3d& robot, FixedVector<Obstacle>& obstacles);
 
   float share_of(float of_a_turn) const;

@@ -130,6 +130,18 @@ TEST(FragmentMerger, PartsOfAWallAreOne) {
       << "a post on the line of a board, 1.9 m off";
 }
 
+TEST(FragmentMerger, PartsOfAFacadeOrABankThatTouchAreOne) {
+  const auto side = [](double x, double y, double yaw) {
+    Obstacle part = box(x, y, 4, 0.4, 90);
+    part.yaw = yaw;
+    return part;
+  };
+  const Obstacle front = box(0, 1, 10, 0.4, 300);
+  EXPECT_EQ(merged({front, side(7.2, 1.1, 0.07)}).size(), 1U);
+  EXPECT_EQ(merged({front, side(5.2, 3.2, std::numbers::pi / 2)}).size(), 2U) << "a corner";
+  EXPECT_EQ(merged({front, side(8, 1, 0)}).size(), 2U) << "a gate of 1 m between them";
+}
+
 TEST(FragmentMerger, LosesNothing) {
   std::mt19937 random(7);
   const auto uniform = [&](double low, double high) {
