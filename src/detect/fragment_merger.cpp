@@ -59,14 +59,16 @@ bool fill_a_box(const Obstacle& a, const Obstacle& b) {
   return area(both, 0) <= area(a, kMargin) + area(b, kMargin);
 }
 
-/// Whether two obstacles may be parts of a bank, a log or a facade: one of them is long, and the
-/// smaller is no small thing at the foot of the other.
+/// Whether two obstacles may be parts of a bank, a log or a facade: they are as high, one of them
+/// is long, and the smaller is no small thing at the foot of the other.
 bool may_be_parts(const Obstacle& whole, const Obstacle& part) {
-  constexpr double kLong = 1, kSlender = 3;  // metres; times as long as wide
-  constexpr double kShare = 0.5;             // of the width
+  constexpr double kLong = 1, kSlender = 3;        // metres; times as long as wide
+  constexpr double kAcross = 0.5, kAsHigh = 0.75;  // shares of width and height
   const Obstacle& longer = whole.extent.x() >= part.extent.x() ? whole : part;
+  const double one = std::abs(whole.height), other = std::abs(part.height);
   return longer.extent.x() >= std::max(kLong, kSlender * longer.extent.y()) &&
-         part.extent.x() >= kShare * whole.extent.y();
+         part.extent.x() >= kAcross * whole.extent.y() &&
+         std::min(one, other) >= kAsHigh * std::max(one, other);
 }
 
 bool is_fragment(const Obstacle& whole, const Obstacle& fragment) {
