@@ -158,8 +158,7 @@ void for_every_key(AnySettings& settings, Visit&& visit) {
   key("least_height", track.least_height, "m", 0, 1,
       "what is lower, or a shallower hole, is not published: wheels pass it. Half of this suffices "
       "for what is as long as a kerb, and for a hole whose floor is not seen: both may be more "
-      "than "
-      "they look");
+      "than they look");
 
   table = "lcm";
   key("url", settings.lcm.url, "", 0, 0,
