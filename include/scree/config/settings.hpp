@@ -190,8 +190,8 @@ struct MapSettings {
 
 /// Obstacles followed from list to list.
 struct TrackingSettings {
-  /// What is found in a list is published as it is, and gone when the next one has it no more: only
-  /// its id stays as long.
+  /// What is found in a list is published at once, unless it is below the default least_height, and
+  /// gone when the next one has it no more: only its id stays as long.
   static TrackingSettings for_sweep();
 
   std::string network = "network_track.txt";
