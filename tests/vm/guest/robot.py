@@ -10,10 +10,9 @@ import threading
 import time
 
 from live_sensors import EmulatedMti, Player, can_socket
-from steps import IS_EMULATED, GpioChip, run
+from steps import GpioChip, run
 
 CONFIG = "/etc/scree/scree.toml"
-DROP_IN = "/run/systemd/system/screed.service.d/emulated.conf"
 # A coarse and narrow map, so that lists come in time on an emulated machine too.
 REACH = 5.0
 MAP = f"registration = false\nreach = {REACH}\nsearch_reach = {REACH}\n"
@@ -84,11 +83,6 @@ class Robot:
         self.chip = GpioChip("rig", ["pps", "stop", "heartbeat"])
         self.mti = PtyMti("/dev/robot-imu")
         self.player = None
-        if IS_EMULATED:  # a sweep may take longer than the watchdog waits
-            os.makedirs(os.path.dirname(DROP_IN))
-            with open(DROP_IN, "w") as file:
-                file.write("[Service]\nWatchdogSec=20\n")
-            run("systemctl daemon-reload")
 
     def configure(self, stop="length = 0.1\nwidth = 0.1\nhold = 0.0", device=None, voxel=0.2):
         with open(os.path.join(self.capture, "scree.toml")) as file:

@@ -7,9 +7,7 @@ import subprocess
 import threading
 import time
 
-# Without KVM everything takes ten times as long or more.
-IS_EMULATED = os.path.exists("emulated")
-PATIENCE = 300 if IS_EMULATED else 60  # seconds; only a hang lasts as long
+PATIENCE = 120  # seconds; only a hang lasts as long
 
 
 def run(command, **options):
