@@ -1,6 +1,7 @@
 """scree record as a program, on live sensors: python3 record_test.py SCREE [TEST ...]"""
 
 import glob
+import json
 import os
 import resource
 import shutil
@@ -85,6 +86,28 @@ class RecordTest(ProgramTest):
         _, summary = process.communicate(timeout=PATIENCE)
         self.assertEqual(process.returncode, 0, summary)
         self.assert_same_values("encoder")
+
+    def test_a_drive_is_calibrated_while_it_lasts(self):
+        self.simulate(12)
+        live = [SCREE, "calibrate", "--live", "60", "--config", self.config, "--json", "--keep",
+                self.recording]  # fmt: skip
+        process = self.start(*live)
+        self.read_until(process.stderr, "recording to")
+        self.play()
+        process.send_signal(signal.SIGINT)
+        found, said = process.communicate(timeout=PATIENCE)
+        self.assertEqual(process.returncode, 0, said)
+        self.assertIn("found", json.loads(found)[1], found)
+        kept = self.done(SCREE, "calibrate", self.recording, "--json")
+        self.assertEqual(found, kept.stdout)
+        self.assert_fails(self.run_to_end(*live), "not an empty folder")
+
+    def test_a_drive_of_which_nothing_came_leaves_nothing(self):
+        os.mkdir(self.path("temporary"))
+        done = self.run_to_end(SCREE, "calibrate", "--live", "1", "--config", self.config,
+                               env={**os.environ, "TMPDIR": self.path("temporary")})  # fmt: skip
+        self.assert_fails(done, "nothing came from any sensor")
+        self.assertEqual(os.listdir(self.path("temporary")), [])
 
     def test_a_killed_recording_is_whole(self):
         self.simulate(1)

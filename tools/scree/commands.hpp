@@ -9,6 +9,9 @@
 
 namespace scree::cli {
 
+/// Where the package puts the robot's configuration.
+inline constexpr const char* kConfigOfRobot = "/etc/scree/scree.toml";
+
 /// Thrown by a subcommand whose work failed: one sentence for stderr, exit code 1.
 /// For wrong usage that CLI11 cannot see by itself throw CLI::ValidationError: exit code 2.
 struct Failure : std::runtime_error {

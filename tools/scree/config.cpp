@@ -10,7 +10,7 @@ namespace scree::cli {
 namespace {
 
 struct ConfigOptions {
-  std::string file = "/etc/scree/scree.toml";
+  std::string file = kConfigOfRobot;
   bool defaults = false, all = false, only_set = false;
 };
 

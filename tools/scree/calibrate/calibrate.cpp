@@ -4,6 +4,7 @@
 #include <array>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "calibrate/calibration_picture.hpp"
@@ -11,14 +12,17 @@
 #include "commands.hpp"
 #include "common/fresh_file.hpp"
 #include "common/outputs.hpp"
+#include "common/temporary_folder.hpp"
 #include "read/lidar_capture.hpp"
+#include "record/record.hpp"
 #include "scree/motion/calibration.hpp"
 
 namespace scree::cli {
 namespace {
 
 struct CalibrateOptions {
-  std::string capture, config, out, picture;
+  std::string capture, config, out, picture, keep;
+  double live = 0;  ///< seconds; 0: a capture
   bool json = false;
   Outputs outputs;
 };
@@ -116,16 +120,16 @@ std::string drop_in(const Settings& settings, const Settings& from) {
   return text;
 }
 
-void calibrate_capture(const CalibrateOptions& options) {
-  options.outputs.require_free({options.out, options.picture}, {options.capture, options.config});
-  if (!options.picture.empty()) require_cairo();
-  const Settings set = capture_settings(options.capture, options.config);
-  const DriveCapture drive = read_drive(options.capture, options.config, set);
+/// @param config empty for the capture's own
+void calibrate_capture(const CalibrateOptions& options, const std::string& capture,
+                       const std::string& config) {
+  const Settings set = capture_settings(capture, config);
+  const DriveCapture drive = read_drive(capture, config, set);
   const Calibration found = calibrate(drive.record, set);
   const bool shows_nothing = std::ranges::none_of(
       found.values, [](const CalibratedValue& value) { return value.why_not.empty(); });
   if (shows_nothing) {
-    throw Failure(options.capture + ": the drive shows nothing of the mounts: " +
+    throw Failure(capture + ": the drive shows nothing of the mounts: " +
                   std::string(found.values[0].why_not));
   }
   const Settings after = with_calibration(set, found);
@@ -140,19 +144,54 @@ void calibrate_capture(const CalibrateOptions& options) {
   if (!options.out.empty()) write_whole(options.out, drop_in(after, set));
 }
 
+/// The drive that is now, by way of a capture.
+void calibrate_live(const CalibrateOptions& options) {
+  const std::string config = options.config.empty() ? kConfigOfRobot : options.config;
+  options.outputs.require_free({options.out, options.picture}, {config});
+  fmt::print(stderr,
+             "scree: drive now for {:.0f} s: bends and turns on the spot to both sides, bumps, "
+             "starts and stops; Ctrl-C ends it earlier\n",
+             options.live);
+  std::optional<TemporaryFolder> temporary;
+  std::string folder = options.keep;
+  if (folder.empty()) folder = temporary.emplace("scree-drive").path();
+  record_sensors(config, folder, options.live, options.outputs);
+  calibrate_capture(options, folder, "");
+}
+
+void run_calibrate(const CalibrateOptions& options) {
+  if (!options.picture.empty()) require_cairo();
+  if (options.live > 0) return calibrate_live(options);
+  if (options.capture.empty()) throw CLI::RequiredError("CAPTURE or --live");
+  options.outputs.require_free({options.out, options.picture}, {options.capture, options.config});
+  calibrate_capture(options, options.capture, options.config);
+}
+
 }  // namespace
 
 void add_calibrate(CLI::App& app) {
   CLI::App* const command = app.add_subcommand(
       "calibrate", "Mounts, encoder scale and delays from a minute of driving with turns");
   const auto options = std::make_shared<CalibrateOptions>();
-  command
-      ->add_option("capture", options->capture,
-                   "folder, as `scree record` and `scree simulate` write it")
-      ->type_name("CAPTURE")
-      ->required();
+  CLI::Option* const capture =
+      command
+          ->add_option("capture", options->capture,
+                       "folder, as `scree record` and `scree simulate` write it")
+          ->type_name("CAPTURE");
+  CLI::Option* const live =
+      command
+          ->add_option("--live", options->live,
+                       "drive now, for so long, instead of a capture; screed must not run")
+          ->type_name("SECONDS")
+          ->check(CLI::PositiveNumber)
+          ->excludes(capture);
+  command->add_option("--keep", options->keep, "new folder in which the recording of --live stays")
+      ->type_name("DIR")
+      ->needs(live);
   command->add_option("--config", options->config,
-                      "configuration; the capture's own scree.toml when not given");
+                      fmt::format("configuration; when not given the capture's own scree.toml, or "
+                                  "with --live {}",
+                                  kConfigOfRobot));
   command
       ->add_option("--out", options->out,
                    "a drop-in with what the drive contradicts, for scree.d beside scree.toml")
@@ -161,7 +200,7 @@ void add_calibrate(CLI::App& app) {
       ->type_name("FILE.png");
   command->add_flag("--json", options->json, "as JSON");
   options->outputs.add_to(*command);
-  command->callback([options] { calibrate_capture(*options); });
+  command->callback([options] { run_calibrate(*options); });
 }
 
 }  // namespace scree::cli

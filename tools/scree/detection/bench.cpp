@@ -14,6 +14,7 @@
 
 #include "commands.hpp"
 #include "common/progress.hpp"
+#include "common/temporary_folder.hpp"
 #include "detection/pipeline_capture.hpp"
 #include "scree/detect/quantile.hpp"
 #include "simulator/capture.hpp"
@@ -35,26 +36,6 @@ std::int64_t used_ns() {
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
   return time.tv_sec * 1'000'000'000LL + time.tv_nsec;
 }
-
-class TemporaryCapture {
-public:
-  TemporaryCapture() {
-    std::string name = (fs::temp_directory_path() / "scree-bench-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw Failure("cannot make a folder for the drives");
-    folder_ = name;
-  }
-  TemporaryCapture(const TemporaryCapture&) = delete;
-  TemporaryCapture& operator=(const TemporaryCapture&) = delete;
-  ~TemporaryCapture() {
-    std::error_code error;
-    fs::remove_all(folder_, error);
-  }
-
-  const fs::path& folder() const { return folder_; }
-
-private:
-  fs::path folder_;
-};
 
 /// What the lists of a drive cost.
 struct DriveCost {
@@ -132,14 +113,14 @@ void print_verdict(double share) {
 
 /// Simulates a drive with the lidar turning at this rate, and measures it.
 DriveCost measure_simulated(double rate_hz, double seconds) {
-  const TemporaryCapture capture;
+  const TemporaryFolder capture("scree-bench");
   CaptureSettings settings;
   settings.scene = Scene::mixed;
   settings.seconds = seconds;
   settings.rate_hz = rate_hz;
   Progress progress("simulating", 1000);
-  require(write_capture(capture.folder(), settings, std::ref(progress)));
-  return measure(capture.folder(), {});
+  require(write_capture(capture.path(), settings, std::ref(progress)));
+  return measure(capture.path(), {});
 }
 
 void run(const BenchOptions& options) {

@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct DoctorOptions {
-  std::string config = "/etc/scree/scree.toml";
+  std::string config = kConfigOfRobot;
   double seconds = 3;
   bool json = false;
 };

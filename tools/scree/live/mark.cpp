@@ -16,8 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kOwnersConfiguration = "/etc/scree/scree.toml";
-
 std::set<fs::path> logs_in(const fs::path& folder) {
   std::set<fs::path> logs;
   std::error_code unreadable;
@@ -59,7 +57,7 @@ void mark(const std::string& config) {
 void add_mark(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("mark", "Close screed's black box now, and print the name of the log");
-  auto config = std::make_shared<std::string>(kOwnersConfiguration);
+  auto config = std::make_shared<std::string>(kConfigOfRobot);
   command->add_option("--config", *config, "configuration of screed")
       ->type_name("FILE")
       ->capture_default_str();

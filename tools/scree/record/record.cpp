@@ -1,3 +1,5 @@
+#include "record/record.hpp"
+
 #include <poll.h>
 #include <spdlog/fmt/fmt.h>
 #include <unistd.h>
@@ -27,7 +29,7 @@ using Clock = std::chrono::steady_clock;
 constexpr int kLookMs = 50;  // how often sensors that are missing, and the time, are looked after
 
 struct RecordOptions {
-  std::string folder, config = "/etc/scree/scree.toml";
+  std::string folder, config = kConfigOfRobot;
   double seconds = 0;
   Outputs outputs;
 };
@@ -92,15 +94,17 @@ double run(const std::vector<Recorder*>& recorders, double longest, Report& repo
   }
 }
 
-void record(const RecordOptions& options) {
+}  // namespace
+
+void record_sensors(const fs::path& config, const fs::path& folder, double seconds,
+                    const Outputs& outputs) {
   stop_on_signals();
   std::signal(SIGPIPE, SIG_IGN);  // whoever reads stderr may go
-  const Settings settings = value_or_fail(load_settings(options.config));
-  const fs::path config = options.config, folder = options.folder;
+  const Settings settings = value_or_fail(load_settings(config));
   value_or_fail(encoder::with_dbc(settings.encoder, config));
   HostClock clock;
   LidarRecorder lidar(settings.lidar, clock);
-  make_capture_folder(folder, options.outputs, config);
+  make_capture_folder(folder, outputs, config);
   keep_config(config, folder);
   lidar.create(folder / "lidar.pcap");
   std::optional<ImuRecorder> imu;
@@ -115,16 +119,14 @@ void record(const RecordOptions& options) {
   if (imu) recorders.push_back(&*imu);
   if (can) recorders.push_back(&*can);
   Report report(recorders);
-  const double seconds = run(recorders, options.seconds, report);
+  const double recorded = run(recorders, seconds, report);
   for (Recorder* recorder : recorders) recorder->close();
-  report.end(seconds);
+  report.end(recorded);
   if (std::all_of(recorders.begin(), recorders.end(),
                   [](const Recorder* recorder) { return recorder->count() == 0; })) {
     throw Failure("nothing came from any sensor");
   }
 }
-
-}  // namespace
 
 void add_record(CLI::App& app) {
   CLI::App* const command =
@@ -139,7 +141,9 @@ void add_record(CLI::App& app) {
   command->add_option("--seconds", options->seconds, "end after this time, else when interrupted")
       ->check(CLI::PositiveNumber);
   options->outputs.add_to(*command);
-  command->callback([options] { record(*options); });
+  command->callback([options] {
+    record_sensors(options->config, options->folder, options->seconds, options->outputs);
+  });
 }
 
 }  // namespace scree::cli
