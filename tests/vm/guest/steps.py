@@ -7,7 +7,7 @@ import subprocess
 import threading
 import time
 
-PATIENCE = 120  # seconds; only a hang lasts as long
+PATIENCE = 60  # seconds; only a hang lasts as long
 
 
 def run(command, **options):
